@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Looks at what each header, preprocessed alone, does to a user's file. No macro of photongrid's may survive it but the version's:
-# one that a file of photongrid's defines and none undefines. And a header that is not a backend's may read nothing of the
+# one that a file of photongrid's defines and none undefines; and HWY_DISABLED_TARGETS, which Highway needs from its first
+# header on, and would define itself. And a header that is not a backend's may read nothing of the
 # packages that only backends need. Nor may any file undefine a macro that the user's file may have, unless it is saved first.
 #
 #   tests/headers.sh [--together] COMPILER HEADER... -- FLAG...
@@ -66,7 +67,7 @@ for file in "${files[@]}"; do
     }
     /^#define / && ours { name = $2; sub(/\(.*/, "", name); left[name] }
     /^#undef / { delete left[$2] }
-    END { for (name in left) if (name !~ /^PHOTONGRID_VERSION_(MAJOR|MINOR|PATCH)$/) print "leaves the macro " name " behind" }')
+    END { for (name in left) if (name !~ /^(PHOTONGRID_VERSION_(MAJOR|MINOR|PATCH)|HWY_DISABLED_TARGETS)$/) print "leaves the macro " name " behind" }')
   if [[ -n $complaints ]]; then
     printf '%s:\n%s\n' "$file" "$complaints"
     status=1

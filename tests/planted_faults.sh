@@ -72,7 +72,7 @@ faults=(
   "guided emission: halves without bins|include/photongrid/trace/emission_guide.hpp|most_boxes = 1024, bins = 16;|most_boxes = 1024, bins = 2;|emission_guide"
   "guided emission: splits by chance|include/photongrid/trace/emission_guide.hpp|least_chi2 = 44.3;|least_chi2 = 10;|emission_guide"
   "guided emission: shares by the rate|include/photongrid/trace/emission_guide.hpp|box.volume() * std::sqrt(rate())|box.volume() * rate() * 0.01|emission_guide"
-  "a map of caustics: paths go on past the first diffuse surface|include/photongrid/trace/bounce_photon.glsl|(args.to_diffuse != 0u|(args.to_diffuse > 1u"
+  "a map of caustics: paths go on past the first diffuse surface|include/photongrid/trace/bounce_photon.glsl|(args.ends != NOTHING_ENDS|(args.ends == ROUGH_ENDS"
   "a map of caustics: it is not seen|include/photongrid/render/add_estimate.glsl|irradiance.x + m.x|irradiance.x"
   "a map of caustics: errors are those of the other photons|include/photongrid/render/add_error.glsl|standard_error * standard_error + m * m|standard_error * standard_error|on_serial_pictures"
   "a map of caustics: the others' k|include/photongrid/render/picture_search.hpp|s.estimate.sought(has_caustic_map(s))|s.estimate.sought(false)"

@@ -81,7 +81,7 @@ TEST(specialisation, a_scene_without_glass_and_lamps_has_smaller_kernels)
         detail::photon_frames<vulkan_backend> f(fresh, 64);
         const detail::mesh_hits<vulkan_backend> none(fresh, device, 0);
         fresh.run<kernels::bounce_photon>({32, 32u, device.layout.features},
-            {.paths = 32, .first_path = 0, .last_frame = 1, .seed = 1, .to_diffuse = 0},
+            {.paths = 32, .first_path = 0, .last_frame = 1, .seed = 1, .ends = kernels::NOTHING_ENDS},
             reads(device.records, f.positions, f.powers, f.directions, f.next_origins, f.next_directions, none.places,
                 none.normals, none.shadings, none.colors),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));

@@ -348,9 +348,6 @@ namespace {
             {"WorldBegin\nMaterial \"dielectric\"\n" + ball + "Translate 1 0 0\n" + ball
                     + "Material \"diffuse\"\nTranslate 9 0 0\n" + ball,
                 "s.pbrt:5:1: error: this glass overlaps other glass; the outside of glass must be air"},
-            {"WorldBegin\nMaterial \"dielectric\"\n" + ball,
-                "s.pbrt: error: nothing in the scene is diffuse, so that no photon can be stored and nothing can be "
-                "lit"},
             {"WorldBegin\n", "s.pbrt: error: the scene has no shape that can be drawn"},
             {"Scale 0 1 1\nCamera \"perspective\"\n",
                 "s.pbrt:2:1: error: Camera: its transformation cannot be inverted"},

@@ -49,7 +49,6 @@ namespace {
     TEST(scene_file, rejects_what_only_all_shapes_show)
     {
         // render() refuses the same without a line.
-        expect_refusal(refusal(6, "lambertian", "mirror"), "8:12", {"shapes: none has a lambertian material"});
         expect_refusal(
             refusal(10, "{\"type\": \"polygon\"",
                 R"({"type": "sphere", "center": [0, 1.5, 0], "radius": 0.5, "material": "clear"}, {"type": "polygon")"),

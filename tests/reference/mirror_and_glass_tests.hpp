@@ -34,6 +34,31 @@ namespace {
             (1 - share) * (1 - share), 0.003);
     }
 
+    /// Directional light by a pane on rough surfaces: by bins, whose pixels are not independent. What comes back from
+    /// the pane is little, since they are dark.
+    TEST(reference, rough_surfaces_behind_a_pane_have_the_light_that_fresnel_says)
+    {
+        const double cosine = 0.8, inside = std::sqrt(1 - 0.4 * 0.4), // 0.6 / 1.5
+            rs = (cosine - 1.5 * inside) / (cosine + 1.5 * inside),
+                     rp = (inside - 1.5 * cosine) / (inside + 1.5 * cosine), share = 0.5 * (rs * rs + rp * rp);
+        for (const auto kind : {material_kind::metal, material_kind::plastic}) {
+            scene s = empty_scene();
+            s.materials[1] = {"plate", kind, dvec3(kind == material_kind::metal ? 0.02 : 0)};
+            s.materials[1].roughness = 0.5;
+            s.polygons = {rectangle({-0.3, 0, -0.3}, {0, 0, 0.6}, {0.6, 0, 0}, 1)};
+            s.directional_lights = {{"sun", {0, -0.8, -0.6}, dvec3(3)}};
+            const camera view{{0, 0.25, -0.45}, {0, 0, 0}, {0, 1, 0}, 20};
+            auto settings = quick(8, 6, 64);
+            settings.paths = 1u << 20;
+            settings.bin = 0.02; // some ten paths in each
+            const double bare = overall(render_reference(s, view, settings)).mean.x;
+            s.boxes = {{{-0.5, 0.4, -0.2}, {1, 0, 0}, {0, 0, 1}, {0, 0.01, 0}, 3}};
+            const auto behind = render_reference(s, view, settings);
+            EXPECT_NEAR(overall(behind).mean.x / bare, (1 - share) / (1 + share), 0.02);
+            EXPECT_GT(behind.stats.light_paths, 0u);
+        }
+    }
+
     /// Flux per ring of the floor, by the light tracer: irradiance round the ring times its area.
     std::vector<double> flux_in_rings(
         const scene& s, const reference_settings& settings, double width, std::size_t rings)

@@ -10,6 +10,7 @@
 #include "known_energy_tests.hpp"
 #include "known_picture_tests.hpp"
 #include "photon_account_tests.hpp"
+#include "rough_photon_tests.hpp"
 
 namespace photongrid::testing {
 
@@ -103,6 +104,10 @@ REGISTER_TYPED_TEST_SUITE_P(pictures, caustic_photons_of_their_own_have_the_powe
     an_exact_picture_does_not_depend_on_how_it_is_run, an_exact_caustic_converges_at_the_rate_of_theory,
     estimates_are_searched_for_or_interpolated_between_near_ones, photons_that_crowd_between_estimates_are_not_missed,
     estimates_are_not_interpolated_over_edges, interpolated_pictures_are_close_and_equal_serials,
-    exact_indirect_light_converges_as_fast_as_noise, a_view_of_a_map_without_a_gather_is_refused);
+    rough_surfaces_behind_a_pane_have_the_known_light, parts_of_mixtures_show_their_share_of_light_behind_a_pane,
+    scenes_without_matte_surfaces_are_drawn, photons_on_rough_surfaces_equal_serials,
+    light_on_rough_surfaces_does_not_depend_on_how_passes_are_run,
+    photons_are_on_rough_surfaces_only_where_rays_find_no_light, exact_indirect_light_converges_as_fast_as_noise,
+    a_view_of_a_map_without_a_gather_is_refused);
 
 } // namespace photongrid::testing

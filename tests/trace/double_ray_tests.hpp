@@ -98,6 +98,7 @@ inline std::vector<glm::dvec4> photons_in_double(const double_scene& wide, uint 
     emit.args.first_path = 0;
     emit.args.seed = seed;
     emit.args.boxes = 0;
+    emit.args.ends = kernels::NOTHING_ENDS;
     turn_switches(emit, wide.features);
     emit.scene_data = wide.records;
     for (uint i = 0; i < paths; ++i) {
@@ -109,7 +110,7 @@ inline std::vector<glm::dvec4> photons_in_double(const double_scene& wide, uint 
     bounce.args.first_path = 0;
     bounce.args.last_frame = frames - 1;
     bounce.args.seed = seed;
-    bounce.args.to_diffuse = 0;
+    bounce.args.ends = kernels::NOTHING_ENDS;
     turn_switches(bounce, wide.features);
     bounce.scene_data = wide.records;
     bounce.positions_data = p;

@@ -60,6 +60,41 @@ TYPED_TEST_P(mixtures, sheets_stop_the_light_of_their_opacity)
     }
 }
 
+/// The eye sees the share of a sheet that is its opacity, so photons on it are of all the light that it receives.
+TYPED_TEST_P(mixtures, what_is_clear_in_part_receives_all_light)
+{
+    auto& b = this->b();
+    const auto power_on_sheet = [&](double opacity, bool in_a_mixture) {
+        scene s;
+        s.materials
+            = {{"wall", material_kind::lambertian, dvec3(0.8)}, {"sheet", material_kind::lambertian, dvec3(0.01)}};
+        if (in_a_mixture) {
+            s.materials.push_back({"mirror", material_kind::mirror, dvec3(0)});
+            s.materials.push_back({"both", material_kind::mixture});
+            s.materials.back().parts = {1, 2};
+        }
+        s.materials.back().opacity = opacity;
+        s.polygons = {{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, 0}};
+        s.meshes = {{"", std::make_shared<const mesh>(textured_rectangle({-1, -1, 1}, {2, 0, 0}, {0, 2, 0})),
+            glm::dmat3(1), dvec3(0), in_a_mixture ? 3u : 1u}};
+        s.point_lights = {{"bulb", {0, 0, 0.5}, dvec3(1)}};
+        s.render.map.photons = 20000;
+        const auto device = upload_scene(b, s);
+        const auto t = trace_photons(b, device, s.render);
+        const auto positions = b.download(t.photons.positions), powers = b.download(t.photons.powers);
+        double sum = 0;
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            if (static_cast<double>(positions[i].z) + device.layout.center.z > 0.5)
+                sum += static_cast<double>(powers[i].x);
+        return sum;
+    };
+    const double opaque = power_on_sheet(1, false);
+    EXPECT_GT(opaque, 0.05);
+    for (const bool in_a_mixture : {false, true})
+        for (const double opacity : {0.2, 0.7})
+            EXPECT_NEAR(power_on_sheet(opacity, in_a_mixture), opaque, 0.04 * opaque) << opacity << in_a_mixture;
+}
+
 /// Where nothing stops light, and where all is stopped, a sheet is not there, or as if it had no opacity.
 TYPED_TEST_P(mixtures, what_is_clear_is_not_seen_and_what_is_opaque_is_as_before)
 {
@@ -200,7 +235,7 @@ TYPED_TEST_P(mixtures, account_for_every_path)
     expect_an_exact_account(this->traced(s), 20000);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(mixtures, sheets_stop_the_light_of_their_opacity,
+REGISTER_TYPED_TEST_SUITE_P(mixtures, sheets_stop_the_light_of_their_opacity, what_is_clear_in_part_receives_all_light,
     what_is_clear_is_not_seen_and_what_is_opaque_is_as_before, matte_parts_add_up_by_their_shares,
     of_all_kinds_have_the_albedo_of_their_parts, of_one_part_and_even_textures_are_as_plain_materials,
     store_all_photons_that_reach_a_matte_part, equal_the_serial_backends, account_for_every_path);

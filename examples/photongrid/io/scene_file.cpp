@@ -77,8 +77,8 @@ namespace {
         void check_shapes() const
         {
             const auto& shapes = at(root(), "shapes");
-            if (!detail::has_matte_shape(scene_))
-                fail(shapes.place, detail::no_matte_shape);
+            if (count_shapes(scene_) == 0)
+                fail(shapes.place, detail::no_shape);
             if (const auto pair = detail::overlapping_glass(scene_)) {
                 const auto number = [&](const detail::shape_place& p) {
                     return std::distance(

@@ -3,6 +3,7 @@
 // light.
 #pragma once
 
+#include <photongrid/reference/binned_surfaces.hpp>
 #include <photongrid/reference/coat.hpp>
 #include <photongrid/reference/intersect.hpp>
 #include <photongrid/reference/random_stream.hpp>
@@ -10,7 +11,7 @@
 #include <photongrid/reference/surfaces.hpp>
 #include <photongrid/reference/work.hpp>
 
-#include <optional>
+#include <span>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -19,6 +20,31 @@ namespace photongrid::reference {
 /// The number of groups of light paths. Each has its own bins, so the groups are independent and the spread between
 /// them measures the error. One thread traces a group, in path order, so sums do not depend on the number of threads.
 constexpr std::uint32_t light_groups = 16;
+
+/// Gives lights probabilities proportional to their power.
+inline void share_probabilities(std::vector<light_source>& lights)
+{
+    const auto brightness = [](const light_source& l) { return l.power.x + l.power.y + l.power.z; };
+    double total = 0;
+    for (const auto& l : lights)
+        total += brightness(l);
+    for (auto& l : lights)
+        l.probability = brightness(l) / total;
+}
+/// One of some lights, by these probabilities.
+inline const light_source& chosen_of(std::span<const light_source> lights, random_stream& random)
+{
+    const auto* light = &lights.front();
+    if (lights.size() > 1) {
+        double u = random();
+        for (const auto& l : lights) {
+            light = &l;
+            if ((u -= l.probability) < 0)
+                break;
+        }
+    }
+    return *light;
+}
 
 /// The caustic irradiance of diffuse surfaces: light that came from a light by mirrors and glass only, at least one of
 /// them.
@@ -39,18 +65,19 @@ public:
         if (lights_.empty())
             return;
         paths_per_group_ = (settings.paths + light_groups - 1) / light_groups;
-        cut(s, shapes, settings);
-        if (size_ == 0)
+        bool shiny = false;
+        for (const auto& m : s.materials)
+            for (const auto* part : parts_of(s.materials, m))
+                shiny = shiny || !is_diffuse(*part) || is_coated(*part);
+        if (shiny)
+            bins_ = {s, shapes, settings, [&](const material& m) { return is_diffuse(s.materials, m); }};
+        if (bins_.size() == 0)
             return;
-        stats.bins = size_;
-        stats.bin_size = bin_;
+        areas_ = bins_.areas();
+        stats.bins = bins_.size();
+        stats.bin_size = bins_.edge();
         stats.light_paths = paths_per_group_ * light_groups;
-        double total = 0;
-        for (const auto& l : lights_)
-            total += brightness(l);
-        for (auto& l : lights_)
-            l.probability = brightness(l) / total;
-
+        share_probabilities(lights_);
         irradiance_.resize(light_groups);
         std::vector<std::uint64_t> hits(light_groups, 0);
         share_out(light_groups, threads_for(settings.threads), "light_paths", static_cast<double>(stats.light_paths),
@@ -68,7 +95,7 @@ public:
     {
         if (empty())
             return dvec3(0);
-        return dvec3(irradiance_[group][bin_at(h, d)]);
+        return dvec3(irradiance_[group][bins_.at(h, d)]);
     }
 
     /// The mean over all groups and its standard error.
@@ -84,64 +111,10 @@ public:
     }
 
 private:
-    static double brightness(const light_source& l) { return l.power.x + l.power.y + l.power.z; }
-
-    /// Chooses the bins' size and divides every diffuse surface into bins.
-    void cut(const scene& s, const geometry& shapes, const reference_settings& settings)
-    {
-        // Calls visit(shape, its number in `shapes`, its material).
-        const auto each_shape = [&](auto visit) {
-            std::uint32_t number = 0;
-            for_each_shape(s, [&](const auto& list, auto) {
-                for (const auto& x : list)
-                    visit(x, number++, s.materials[x.material]);
-            });
-            number = shapes.first_triangle();
-            for (const auto& l : s.mesh_lights)
-                number += static_cast<std::uint32_t>(l.surface.surface->triangles.size());
-            for (const auto& m : s.meshes)
-                for (std::size_t t = 0; t < m.surface->triangles.size(); ++t) {
-                    const auto c = corners_of(m, t);
-                    visit(polygon{{c[0], c[1], c[2]}, m.material}, number++, s.materials[m.material]);
-                }
-        };
-        double area = 0;
-        bool shiny = false;
-        each_shape([&](const auto& x, std::uint32_t, const material& m) {
-            area += is_diffuse(s.materials, m) ? surface_area(x) : 0;
-            for (const auto* part : parts_of(s.materials, m))
-                shiny = shiny || !is_diffuse(*part) || is_coated(*part);
-        });
-        if (!shiny || !(area > 0))
-            return;
-        // Larger bins have less noise and more blur. The best edge is proportional to the number of paths to the power
-        // -1/4.
-        bin_ = settings.bin > 0 ? settings.bin
-                                : std::sqrt(area) / (8 * std::pow(static_cast<double>(settings.paths), 0.25));
-        each_shape([&](const auto& x, std::uint32_t number, const material& m) {
-            surfaces_.resize(std::max<std::size_t>(surfaces_.size(), number + std::size_t{1}));
-            if (!is_diffuse(s.materials, m) || !(surface_area(x) > 0))
-                return;
-            auto& surface = surfaces_[number];
-            surface.bins.emplace(bins_of(x, bin_));
-            surface.first = size_;
-            size_ += 2 * std::visit([](const auto& b) { return b.size(); }, *surface.bins);
-            require_few_bins(size_, bin_);
-        });
-    }
-
-    /// The bin at `h` on the side that a ray of direction d hits.
-    std::uint32_t bin_at(const hit& h, const dvec3& d) const
-    {
-        const auto& surface = surfaces_[h.shape];
-        const std::uint32_t in_shape = std::visit([&](const auto& b) { return b.at(h.position); }, *surface.bins);
-        return surface.first + 2 * in_shape + (glm::dot(h.normal, d) > 0 ? 1 : 0);
-    }
-
     std::uint64_t trace_group(
         const scene& s, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
     {
-        std::vector<dvec3> flux(size_, dvec3(0));
+        std::vector<dvec3> flux(bins_.size(), dvec3(0));
         random_stream random(settings.seed, 1, group);
         const surfaces met(s, shapes);
         std::uint64_t hits = 0;
@@ -154,17 +127,10 @@ private:
                 hits += trace_path(met, shapes, settings, random, flux);
         }
         auto& out = irradiance_[group];
-        out.assign(size_, glm::vec3(0));
-        for (const auto& surface : surfaces_)
-            if (surface.bins)
-                std::visit(
-                    [&](const auto& b) {
-                        for (std::uint32_t i = 0; i < 2 * b.size(); ++i)
-                            if (const double area = b.area(i / 2); area > 0)
-                                out[surface.first + i] = glm::vec3(
-                                    flux[surface.first + i] / (area * static_cast<double>(paths_per_group_)));
-                    },
-                    *surface.bins);
+        out.assign(bins_.size(), glm::vec3(0));
+        for (std::uint32_t i = 0; i < bins_.size(); ++i)
+            if (areas_[i] > 0)
+                out[i] = glm::vec3(flux[i] / (areas_[i] * static_cast<double>(paths_per_group_)));
         return hits;
     }
 
@@ -173,17 +139,9 @@ private:
     std::uint64_t trace_path(const surfaces& all, const geometry& shapes, const reference_settings& settings,
         random_stream& random, std::vector<dvec3>& flux) const
     {
-        const auto* light = &lights_.front();
-        if (lights_.size() > 1) {
-            double u = random();
-            for (const auto& l : lights_) {
-                light = &l;
-                if ((u -= l.probability) < 0)
-                    break;
-            }
-        }
-        const auto emitted = shapes.emit(*light, random);
-        dvec3 power = emitted.power / light->probability;
+        const auto& light = chosen_of(lights_, random);
+        const auto emitted = shapes.emit(light, random);
+        dvec3 power = emitted.power / light.probability;
         ray r = emitted.from;
         std::uint64_t added = 0;
         bool from_light = true; // straight, or through clear surfaces
@@ -191,7 +149,9 @@ private:
             const hit h = shapes.nearest(r);
             if (h.shape == nothing || h.light != nothing)
                 return added;
-            if (all.passes(h, random)) {
+            // What is clear in part receives all light: the eye sees that share of it which is its opacity.
+            const bool passes = all.passes(h, random);
+            if (passes && from_light) {
                 r = {h.position, r.direction, h.shape};
                 continue;
             }
@@ -202,8 +162,12 @@ private:
                                              : specular_of_light(m, h, r.direction, random);
             if (const auto* base = from_light ? nullptr : all.base(h)) { // else direct light: see the path tracer
                 const double passed = is_diffuse(m) ? 1 - bounce.weight : passes_coat(*base, h, r.direction, random);
-                flux[bin_at(h, r.direction)] += power * passed * facing_normals(h, r.direction).received(r.direction);
+                flux[bins_.at(h, r.direction)] += power * passed * facing_normals(h, r.direction).received(r.direction);
                 ++added;
+            }
+            if (passes) {
+                r = {h.position, r.direction, h.shape};
+                continue;
             }
             from_light = false;
             if (bounce.adjoint == 0 || bounce.weight == 0)
@@ -214,14 +178,9 @@ private:
         return added;
     }
 
-    struct binned_surface {
-        std::optional<surface_bins> bins; ///< of a diffuse shape
-        std::uint32_t first = 0;          ///< of its bins; each has two, for the two sides
-    };
     std::vector<light_source> lights_;
-    std::vector<binned_surface> surfaces_; ///< by shape
-    std::uint32_t size_ = 0;
-    double bin_ = 0;
+    binned_surfaces bins_;      ///< of all diffuse surfaces
+    std::vector<double> areas_; ///< of the bins, m^2
     std::uint64_t paths_per_group_ = 0;
     std::vector<std::vector<glm::vec3>> irradiance_; ///< by group and bin
 };

@@ -1,7 +1,7 @@
 // Path tracing from the camera, with a shadow ray to a light at every diffuse surface.
 #pragma once
 
-#include <photongrid/reference/light_tracer.hpp>
+#include <photongrid/reference/rough_bins.hpp>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -11,10 +11,10 @@ namespace photongrid::reference {
 class path_tracer {
 public:
     /// The arguments must outlive the tracer.
-    path_tracer(
-        const scene& s, const geometry& shapes, const caustic_bins& caustics, const reference_settings& settings)
+    path_tracer(const scene& s, const geometry& shapes, const caustic_bins& caustics, const rough_bins& on_rough,
+        const reference_settings& settings)
         : bases_(s.materials.begin(), s.materials.end()), shapes_(shapes), surfaces_(s, shapes), caustics_(caustics),
-          settings_(settings)
+          on_rough_(on_rough), settings_(settings)
     {
     }
 
@@ -56,7 +56,8 @@ public:
             if (is_coated(m))
                 bounce = off_coat(m, h, r.direction, random, false);
             if (is_coated(m) && is_rough(m) && surfaces == 0 && specular_before < settings_.depth)
-                sum += throughput * highlight(m, h, r.direction, random);
+                sum += throughput
+                    * (highlight(m, h, r.direction, random) + on_rough_.radiance(m, h, r.direction, random, group));
             const bool by_coat = is_coated(m) && random() < bounce.weight;
             if (is_diffuse(m) && !by_coat) {
                 if (++surfaces > settings_.photon_depth)
@@ -83,7 +84,9 @@ public:
                     return sum;
                 if (!by_coat) {
                     if (is_rough(m) && surfaces == 0)
-                        sum += throughput * met.reflectance() * highlight(m, h, r.direction, random);
+                        sum += throughput * met.reflectance()
+                            * (highlight(m, h, r.direction, random)
+                                + on_rough_.radiance(m, h, r.direction, random, group));
                     bounce = specular(m, h, r.direction, random);
                     throughput *= met.reflectance() * (bounce.radiance_scale * bounce.weight);
                 }
@@ -117,26 +120,10 @@ private:
         return {light.radiance(), light.probability * t * t / (light.area * cosine)};
     }
 
-    /// A light, chosen by power.
-    const light_source& chosen(random_stream& random) const
-    {
-        const auto lights = shapes_.lights();
-        const light_source* light = &lights.front();
-        if (lights.size() > 1) {
-            double u = random();
-            for (const auto& l : lights) {
-                light = &l;
-                if ((u -= l.probability) < 0)
-                    break;
-            }
-        }
-        return *light;
-    }
-
     /// The radiance of lights that rays cannot find, as a rough surface reflects or refracts it against d.
     dvec3 highlight(const material& m, const hit& h, const dvec3& d, random_stream& random) const
     {
-        const auto& light = chosen(random);
+        const auto& light = chosen_of(shapes_.lights(), random);
         if (light.is_visible())
             return dvec3(0);
         const auto seen = shapes_.seen_from(light, h.position, random);
@@ -151,7 +138,7 @@ private:
     /// The irradiance of direct light, below a coat if there is one, by one shadow ray to a light chosen by power.
     dvec3 direct(const material& m, const hit& h, const facing_normals& normals, random_stream& random) const
     {
-        const auto& light = chosen(random);
+        const auto& light = chosen_of(shapes_.lights(), random);
         const auto seen = shapes_.seen_from(light, h.position, random);
         const dvec3& d = seen.towards;
         double cosine = glm::dot(normals.geometric, d) > 0 ? glm::dot(normals.shading, d) : 0;
@@ -171,6 +158,7 @@ private:
     const geometry& shapes_;
     surfaces surfaces_;
     const caustic_bins& caustics_;
+    const rough_bins& on_rough_;
     const reference_settings& settings_;
 };
 

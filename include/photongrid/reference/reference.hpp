@@ -1,7 +1,7 @@
 // The reference renderer, against which errors of the photon map are measured. It runs on the CPU in double precision
-// and shares no kernels. It is a path tracer with shadow rays, and a light tracer with bins for caustics that eye paths
-// cannot find. docs/reference/reference_renderer.md has the conventions that it shares with the photon-map renderer. It
-// uses threads: link Threads::Threads if the system needs that.
+// and shares no kernels. It is a path tracer with shadow rays, and a light tracer with bins for caustics, and for
+// light on rough surfaces, that eye paths cannot find. docs/reference/reference_renderer.md has the conventions that it
+// shares with the photon-map renderer. It uses threads: link Threads::Threads if the system needs that.
 #pragma once
 
 #include <photongrid/reference/path_tracer.hpp>
@@ -40,10 +40,12 @@ inline reference_picture render_reference(
 
     const auto light_start = clock::now();
     const reference::caustic_bins caustics(s, shapes, settings, observer, out.stats);
+    const reference::rough_bins on_rough(s, shapes, settings, observer, out.stats);
     out.stats.light_seconds = seconds_since(light_start);
 
     // Samples of a pixel that use the same bins are not independent; groups of samples with separate bins are.
-    const std::uint32_t groups = caustics.empty() ? settings.spp : reference::light_groups;
+    const bool has_bins = !caustics.empty() || !on_rough.empty();
+    const std::uint32_t groups = has_bins ? reference::light_groups : settings.spp;
     const std::uint32_t per_group = (settings.spp + groups - 1) / groups;
     out.stats.spp = groups * per_group;
 
@@ -56,7 +58,7 @@ inline reference_picture render_reference(
     out.mean = {settings.width, settings.height, std::vector<glm::vec3>(pixels, glm::vec3(0))};
     out.standard_error = out.mean;
     std::vector<std::uint64_t> invalid(settings.height, 0);
-    const reference::path_tracer tracer(s, shapes, caustics, settings);
+    const reference::path_tracer tracer(s, shapes, caustics, on_rough, settings);
     const auto eye_start = clock::now();
     reference::share_out(settings.height, out.stats.threads, "eye_paths", static_cast<double>(pixels), observer,
         [&](std::uint32_t y, reference::watch& w) {
@@ -74,7 +76,7 @@ inline reference_picture render_reference(
                         const dvec3 d = forward + (x + dx - 0.5 * settings.width) * pixel * right
                             + (0.5 * settings.height - (y + dy)) * pixel * up;
                         const dvec3 sample = tracer.radiance(
-                            {view.position, glm::normalize(d), reference::nothing}, random, caustics.empty() ? 0 : g);
+                            {view.position, glm::normalize(d), reference::nothing}, random, has_bins ? g : 0);
                         if (detail::finite(sample))
                             sum += sample;
                         else

@@ -4,6 +4,7 @@
 
 #include <photongrid/map/map_builders.hpp>
 #include <photongrid/render/final_gather.hpp>
+#include <photongrid/render/rough_photons.hpp>
 #include <photongrid/render/shrinking_radii.hpp>
 #include <photongrid/render/stage_clock.hpp>
 #include <photongrid/render/world.hpp>
@@ -34,9 +35,10 @@ struct built_map {
     /// What is searched where rays end, as requests_of() lists it. The first has all photons, or those that the others
     /// leave to it; only caustic ones if rays of a final gather start there, none with both.
     std::vector<light_map<B>> lights;
-    render_stats stats;                  ///< trace_photons, build_map and map
-    std::optional<gather_map<B>> gather; ///< of all photons, for a final gather
-    bool splits_caustics = false;        ///< the first map has no caustic photons
+    render_stats stats;                       ///< trace_photons, build_map and map
+    std::optional<gather_map<B>> gather;      ///< of all photons, for a final gather
+    bool splits_caustics = false;             ///< the first map has no caustic photons
+    std::optional<rough_photons<B>> on_rough; ///< if the scene needs them
 
     const device_scene<B>& scene() const { return world->scene; }
     const map_buffers<B>& map() const { return lights.front().map; }
@@ -86,7 +88,8 @@ public:
         built_.world = std::move(of);
         built_.splits_caustics = settings_.map.caustic_photons > 0;
         for (const auto& request : requests_of(settings_, layout()))
-            built_.lights.push_back({request, {}, {}});
+            if (use_ == map_use::light || !request.on_rough())
+                built_.lights.push_back({request, {}, {}});
         detail::time_stage(device, built_.stats.trace_photons, [&] { begin_tracing(); });
     }
     map_building(const map_building&) = delete;
@@ -174,6 +177,8 @@ private:
         auto with = settings_;
         if (request.are_caustics_of_others)
             with.seed ^= 0xB5297A4Du; // else they would be on the paths of the other photons
+        if (request.on_rough())
+            with.seed ^= 0x68E31DA4u;
         tracing_.emplace(device_, built_.scene(), with, request, guide != nullptr ? *guide : emission_guide{});
     }
     /// Ends tracing for a light map, and begins with the next.
@@ -186,6 +191,8 @@ private:
     }
     void build()
     {
+        if (built_.lights.back().request.on_rough())
+            build_on_rough();
         auto& first = built_.lights.front().trace.photons;
         if (gathers(settings_) && built_.splits_caustics) // all photons are the gather's alone
             gather_.emplace(device_, built_.scene(), std::exchange(first, no_photons()), settings_);
@@ -209,6 +216,17 @@ private:
         made.resolution = glm::uvec3(map.cells_of.resolution);
         made.overflowing_cells = map.overflowing_cells;
         made.left_out = map.left_out;
+    }
+
+    /// They are no irradiance, so they are none of the light maps.
+    void build_on_rough()
+    {
+        auto of = std::move(built_.lights.back().trace.photons);
+        built_.lights.pop_back();
+        auto p = detail::copy(device_, of);
+        const auto k = settings_.estimate.sought(has_caustic_map(settings_));
+        built_.on_rough.emplace(
+            rough_photons<B>{fitted_map(device_, std::move(p), k), std::move(of.powers), std::move(of.directions)});
     }
 
     photons<B> no_photons()

@@ -8,6 +8,7 @@
 #include <photongrid/render/canvas.hpp>
 #include <photongrid/render/gathered_paths.hpp>
 #include <photongrid/render/interpolated_estimates.hpp>
+#include <photongrid/render/no_light.kernel.hpp>
 #include <photongrid/render/picture_search.hpp>
 #include <photongrid/render/preview_image.hpp>
 #include <photongrid/render/previews.hpp>
@@ -347,8 +348,12 @@ bool view_pass<B>::direct_light(uint ray)
             detail::direct_light(device_, built_.scene(), {with, ray, pixels}, samples_->hits, samples_->direct);
         } else {
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
-            device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->hits.emissions));
+            device_.template run<kernels::no_light>(pixels, {}, reads(), writes(samples_->hits.emissions));
         }
+        if (built_.on_rough
+            && (settings_.output.only == light_part::all || settings_.output.only == light_part::caustic))
+            detail::add_light_of_photons(
+                device_, built_.scene(), *built_.on_rough, {settings_, ray, pixels}, radii_.share2, samples_->hits);
     });
 }
 
@@ -386,8 +391,9 @@ bool view_pass<B>::shade(uint ray)
     search_.reset();
     found_.clear();
     gathered_ = 0;
-    if (is_preview() && !follows_paths(settings_)) { // its paths saw caustics with radii of their own
-        (*kept_)[ray] = std::move(samples_);         // the next pass may have the same pixels
+    // Else what photons brought there is of this map, and paths saw caustics with radii of their own.
+    if (is_preview() && !follows_paths(settings_) && !built_.on_rough) {
+        (*kept_)[ray] = std::move(samples_); // the next pass may have the same pixels
         samples_.reset();
     }
     ++canvas_.rays;

@@ -39,10 +39,10 @@ public:
 private:
     /// For more photons there are more pilot paths: with the guide for others, a picture would depend on which map was
     /// built first, that of a preview or of the first radii, or that of a pass.
-    using key = std::tuple<uint, uint, uint>; // kinds, number of photons, depth of paths
+    using key = std::tuple<uint, uint, uint, uint>; // kinds, ends, number of photons, depth of paths
     static key key_of(const render_settings& s, const photon_request& r)
     {
-        return {r.kinds, r.photons, s.map.photon_depth};
+        return {r.kinds, r.ends, r.photons, s.map.photon_depth};
     }
 
     std::map<key, emission_guide> guides_;

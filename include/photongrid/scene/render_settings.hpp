@@ -75,7 +75,7 @@ enum class indirect_kind { map, gather, paths };
 /// those that the search finds in a map of its own (shrinking_radii.hpp), if the picture has several passes.
 enum class radius_kind { per_pass, shrinking };
 
-/// Whether a picture tells the bias of its pixels (reports_bias).
+/// Whether a picture reports the bias of its pixels (reports_bias).
 enum class bias_report { automatic, no, yes };
 
 /// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).

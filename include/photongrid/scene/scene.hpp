@@ -274,20 +274,7 @@ namespace detail {
         return std::nullopt;
     }
 
-    /// What a photon map needs.
-    inline constexpr const char* no_matte_shape
-        = "shapes: none has a lambertian material, so no photon can be stored and nothing can be lit";
-    inline bool has_matte_shape(const scene& s)
-    {
-        bool has = false;
-        const auto look = [&](const auto& list, auto) {
-            for (const auto& x : list)
-                has = has || is_diffuse(s.materials, s.materials[x.material]);
-        };
-        for_each_shape(s, look);
-        look(s.meshes, nullptr);
-        return has;
-    }
+    inline constexpr const char* no_shape = "shapes: there is none; add one to see";
 
     /// Only meshes are clear, and textures need coordinates, which only they have.
     template <class Part>

@@ -11,7 +11,7 @@ struct Params {
     uint first_path; // id of the path of a frame's element 0
     uint last_frame; // the last bounce allowed
     uint seed;
-    uint to_diffuse; // 1: paths end at the first diffuse surface, as those of a map of caustic photons
+    uint ends;       // what ends paths besides absorption: see photon_event.glsl
 };
 PARAMS(Params)
 SWITCH(4, MIRRORS)
@@ -60,7 +60,7 @@ uint hit_before(vec4 last)
     if (kind == DIFFUSE_SURFACE)
         return DIFFUSE_BEFORE;
     uint before = event_before(last);
-    bool specular = kind == SPECULAR_SURFACE || (MIXTURES && kind == BOTH_SURFACES);
+    bool specular = kind == SPECULAR_SURFACE || (kind == BOTH_SURFACES && !event_goes_straight_on(last));
     return specular && before == NOTHING_BEFORE ? SPECULAR_BEFORE : before;
 }
 
@@ -78,11 +78,25 @@ vec4 arriving_power(uint before, vec4 last)
     precise vec4 tinted = vec4(arrived.x * (colour.x / survival), arrived.y * (colour.y / survival),
         arrived.z * (colour.z / survival), 0.0f);
     arrived = tinted;
-    if (MIXTURES && event_kind(last) == BOTH_SURFACES) {
+    if ((MIXTURES || CLEAR) && event_kind(last) == BOTH_SURFACES) {
         precise vec4 left = arrived * event_leaving(last);
         arrived = left;
     }
     return arrived;
+}
+
+// The kind of surface for a map of photons on rough ones: diffuse stands for rough. A path begins at smooth surfaces,
+// since eye rays find the others. `other`: see surface_for().
+uint rough_surface_for(Surface s, uint other, uint before)
+{
+    if (before == NOTHING_BEFORE)
+        return is_delta(s) ? SPECULAR_SURFACE : NO_SURFACE;
+    if (s.material.alpha > 0.0f)
+        return DIFFUSE_SURFACE;
+    bool is_stored = MIXTURES && other != NO_MATERIAL && material_of(other).alpha > 0.0f;
+    if (is_stored)
+        return is_delta(s) ? BOTH_SURFACES : DIFFUSE_SURFACE;
+    return is_delta(s) ? SPECULAR_SURFACE : NO_SURFACE;
 }
 
 // The kind of surface that a photon meets. `other`: the part of the mixture that was not drawn; it may still store the
@@ -114,17 +128,31 @@ void leave(Hit hit, vec3 d, vec3 normal)
     next_direction = vec4(d.x, d.y, d.z, normal.z);
 }
 
-// The photon passes a surface that is clear in part.
-void pass_clear(Hit hit, vec3 d, Photon photon)
+void go_straight_on(Hit hit, vec3 d, Photon photon)
 {
+    power = photon.power;
     direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
     leave(hit, d, vec3(0.0f, 0.0f, 0.0f));
     position.w = event_code(NO_SURFACE, photon.end, photon.before);
 }
 
+// The photon passes a surface that is clear in part, which has stored it if `surface` is one that does: stored with its
+// opacity alone, a map would have that share of the irradiance, of which the eye would see that share once more.
+void pass_clear(Hit hit, Surface s, uint surface, Photon photon, float round_by)
+{
+    if (surface < DIFFUSE_SURFACE) {
+        go_straight_on(hit, s.d, photon);
+        return;
+    }
+    direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
+    precise float leaving = 1.0f / received_by_base(s);
+    position.w = event_of_both(photon.end, photon.before, leaving, round_by, true);
+    leave(hit, s.d, s.shading);
+}
+
 // The photon meets a surface, which may store it, and leaves it or is absorbed. `other`: see surface_for(); `round_by`:
-// a random number.
-void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by)
+// a random number; `passes`: it goes straight on.
+void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool passes)
 {
     vec4 r = random4(uvec4(photon.id, photon.frame, 0u, args.seed));
     Facet facet = facet_met(s, r.y, r.z);
@@ -133,12 +161,18 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by)
     direction.w = float(s.number);
     if (TEXTURES || COATS || MIXTURES || CLEAR)
         direction.w = survival > 0.0f ? color_code(s.material.reflectance) : 0.0f;
-    uint surface = surface_for(s, other, r);
+    bool for_rough = ROUGH && args.ends == ROUGH_ENDS;
+    uint surface = for_rough ? rough_surface_for(s, other, photon.before) : surface_for(s, other, r);
     float received = surface == SPECULAR_SURFACE ? 1.0f : received_by_base(s);
     precise vec3 at_base = vec3(photon.power) * received; // which sends it out about its geometric normal
     receive(at_base, s.shading);
     position.w = event_code(surface, ABSORBED, photon.before);
-    if ((args.to_diffuse != 0u && surface == DIFFUSE_SURFACE) || !(r.x < survival))
+    if (CLEAR && passes) {
+        pass_clear(hit, s, surface, photon, round_by);
+        return;
+    }
+    bool ends = surface == NO_SURFACE || (args.ends != NOTHING_ENDS && surface == DIFFUSE_SURFACE);
+    if (ends || !(r.x < survival))
         return;
     Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(photon.id, photon.frame, 0u, args.seed));
     // r.x is uniform below `survival`, so the same number also decides whether another facet hides the photon. What
@@ -149,7 +183,7 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by)
     position.w = event_code(surface, photon.end, photon.before);
     if (MIXTURES && surface == BOTH_SURFACES) {
         precise float leaving = l.power_scale / received;
-        position.w = event_of_both(photon.end, photon.before, leaving, round_by);
+        position.w = event_of_both(photon.end, photon.before, leaving, round_by, false);
     } else if (surface == SPECULAR_SURFACE) {
         precise vec3 scaled = at_base * l.power_scale;
         receive(scaled, s.shading);
@@ -200,9 +234,14 @@ void kernel(uint i)
     vec4 chance = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     if (MIXTURES || CLEAR)
         chance = random4(uvec4(photon.id, photon.frame, 1000u, args.seed));
-    if (CLEAR && !(chance.x < opacity_at(hit.material, on_mesh, number))) {
-        pass_clear(hit, d, photon);
-        return;
+    bool passes = false;
+    if (CLEAR) {
+        float opacity = opacity_at(hit.material, on_mesh, number);
+        passes = !(chance.x < opacity);
+        if (!(opacity > 0.0f)) {
+            go_straight_on(hit, d, photon);
+            return;
+        }
     }
     uint part = 0u;
     uint other = NO_MATERIAL;
@@ -213,7 +252,7 @@ void kernel(uint i)
         other = part == 0u ? parts.second : parts.first;
     }
     Surface s = surface_met(hit, d, material_at(hit.material, part, on_mesh, number));
-    scatter(hit, s, other, photon, chance.z);
+    scatter(hit, s, other, photon, chance.z, passes);
 }
 
 // Whether this path needs no further frames.

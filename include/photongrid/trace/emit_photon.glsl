@@ -3,11 +3,13 @@
 #include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #include <photongrid/trace/emission_guide.glsl>
+#include <photongrid/trace/photon_event.glsl>
 
 struct Params {
     uint first_path; // id of the path of element 0
     uint seed;
     uint boxes; // of the guide; 0: none
+    uint ends;  // what ends paths: with ROUGH_ENDS those from lights with a size, which rays find, do not begin
 };
 PARAMS(Params)
 INPUT(0, vec4, scene)
@@ -42,9 +44,12 @@ void kernel(uint i)
     }
     Emitted e = emitted_photon(at, drawn.first, drawn.second);
     precise vec3 weighted = e.power * drawn.weight;
-    position = vec4(e.origin.x, e.origin.y, e.origin.z, 0.0f);
+    bool begins = args.ends != ROUGH_ENDS || scene(at).w == float(SAMPLED_ONCE);
+    vec4 start = vec4(e.origin.x, e.origin.y, e.origin.z, 0.0f);
+    position = vec4(start.x, start.y, start.z,
+        begins ? 0.0f : event_code(NO_SURFACE, ENDED_BEFORE, NOTHING_BEFORE));
     power = vec4(weighted.x, weighted.y, weighted.z, 0.0f);
     direction = vec4(e.direction.x, e.direction.y, e.direction.z, 0.0f);
-    next_origin = position;
-    next_direction = direction;
+    next_origin = start;
+    next_direction = vec4(e.direction.x, e.direction.y, e.direction.z, 0.0f);
 }

@@ -10,7 +10,8 @@ const uint EVENT_BEFORE_SHIFT = 22u;
 const uint NO_SURFACE = 0u;
 const uint SPECULAR_SURFACE = 1u;
 const uint DIFFUSE_SURFACE = 2u;
-// Of a mixture: the part that stores photons stored this one, which then left as from the other part, a specular one.
+// The surface stored the photon, which then left otherwise: of a mixture as from the other part, a specular one; or
+// straight on, where the surface is clear in part.
 const uint BOTH_SURFACES = 3u;
 
 // How the path continues or ends
@@ -43,6 +44,12 @@ inline uint event_before(vec4 position)
 {
     return uint(position.w) >> EVENT_BEFORE_SHIFT;
 }
+// What ends paths besides absorption: nothing; the first diffuse surface, as those of caustic photons; the first surface
+// that is not smooth, as those of photons on rough surfaces (rough_photons.hpp).
+const uint NOTHING_ENDS = 0u;
+const uint DIFFUSE_ENDS = 1u;
+const uint ROUGH_ENDS = 2u;
+
 // Whether the surface stored the photon, or left it to the direct light.
 inline bool event_is_diffuse(vec4 position)
 {
@@ -56,17 +63,22 @@ inline bool event_is_stored(vec4 position, uint kinds)
 {
     return event_is_diffuse(position) && ((kinds >> event_before(position)) & 1u) != 0u;
 }
-// Of BOTH_SURFACES, the power that leaves over that which was stored, which differ by shading normals: at most 256, in
-// steps of 2^-8. `u` in [0, 1) rounds it so that its mean is right.
-inline float event_of_both(uint end, uint before, float leaving, float u)
+// Of BOTH_SURFACES, the power that leaves over that which was stored, which differ by shading normals: below 256, in
+// steps of 2^-8. `u` in [0, 1) rounds it so that its mean is right. `straight`: it goes straight on.
+inline float event_of_both(uint end, uint before, float leaving, float u, bool straight)
 {
     precise float steps = leaving * 256.0f + u;
-    uint rounded = steps < 65536.0f ? uint(steps) : 65536u;
-    return event_code(BOTH_SURFACES, end, before) + float(rounded << EVENT_LEAVING_SHIFT);
+    uint rounded = steps < 65535.0f ? uint(steps) : 65535u;
+    return event_code(BOTH_SURFACES, end, before)
+        + float((rounded + (straight ? 65536u : 0u)) << EVENT_LEAVING_SHIFT);
 }
 inline float event_leaving(vec4 position)
 {
-    return float((uint(position.w) >> EVENT_LEAVING_SHIFT) & 131071u) / 256.0f;
+    return float((uint(position.w) >> EVENT_LEAVING_SHIFT) & 65535u) / 256.0f;
+}
+inline bool event_goes_straight_on(vec4 position)
+{
+    return ((uint(position.w) >> EVENT_LEAVING_SHIFT) & 65536u) != 0u;
 }
 
 #endif

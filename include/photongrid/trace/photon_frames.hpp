@@ -8,6 +8,7 @@
 #include <photongrid/trace/emit_photon.kernel.hpp>
 #include <photongrid/trace/mesh_search.hpp>
 #include <photongrid/trace/path_goes_on.kernel.hpp>
+#include <photongrid/trace/photon_event.kernel.hpp>
 #include <photongrid/trace/photon_to_search.kernel.hpp>
 #include <photongrid/trace/sum_tallies.kernel.hpp>
 
@@ -28,8 +29,8 @@ struct path_tally {
 template <backend B>
 struct path_batch {
     uint paths = 0;
-    uint first = 0;          ///< id of the first path
-    bool to_diffuse = false; ///< paths end at the first diffuse surface, as those of a map of caustic photons
+    uint first = 0;                                 ///< id of the first path
+    uint ends = kernels::NOTHING_ENDS;              ///< what ends paths besides absorption (photon_event.glsl)
     const buffer_of<B, glm::vec4>* guide = nullptr; ///< records of the emission guide, if there is one
 };
 
@@ -79,7 +80,8 @@ namespace detail {
         device.template run<kernels::emit_photon>({batch.paths, 0u, s.layout.features},
             {.first_path = batch.first,
                 .seed = seed,
-                .boxes = static_cast<uint>(vectors / kernels::VECTORS_PER_EMISSION_BOX)},
+                .boxes = static_cast<uint>(vectors / kernels::VECTORS_PER_EMISSION_BOX),
+                .ends = batch.ends},
             inputs_of_emission(s, batch.guide),
             writes(f.positions, f.powers, f.directions, f.next_origins, f.next_directions));
     }
@@ -92,7 +94,7 @@ namespace detail {
             .first_path = batch.first,
             .last_frame = settings.map.photon_depth,
             .seed = settings.seed,
-            .to_diffuse = batch.to_diffuse ? 1u : 0u};
+            .ends = batch.ends};
     }
     template <backend B>
     auto reads_of_bounce(const device_scene<B>& s, const photon_frames<B>& f, const mesh_hits<B>& hits)

@@ -21,9 +21,10 @@ struct photon_request {
     /// paths, so that what was stored counts: light that so few paths find is noisy, and dim.
     std::uint64_t most_paths = 0;
     bool are_caustics_of_others = false; ///< caustic photons of a picture whose other photons are in another map
+    uint ends = kernels::NOTHING_ENDS;   ///< what ends paths besides absorption (photon_event.glsl)
 
-    /// Whether paths can end at the first diffuse surface.
-    bool to_diffuse() const { return (kinds & kernels::OTHER_PHOTONS) == 0; }
+    /// Whether they are those on rough surfaces (rough_photons.hpp).
+    bool on_rough() const { return ends == kernels::ROUGH_ENDS; }
     bool operator==(const photon_request&) const = default;
 };
 
@@ -40,7 +41,17 @@ constexpr uint most_paths_per_photon = 256, most_paths_per_caustic_photon = 64, 
 /// A request for caustic photons alone.
 inline photon_request request_of_caustics(uint photons)
 {
-    return {photons, kernels::CAUSTICS, std::uint64_t{photons} * most_paths_per_caustic_photon};
+    photon_request r{photons, kernels::CAUSTICS, std::uint64_t{photons} * most_paths_per_caustic_photon};
+    r.ends = kernels::DIFFUSE_ENDS;
+    return r;
+}
+/// The photons on rough surfaces of a picture with settings `s`: as many as caustic ones, which they resemble, or an
+/// eighth of all.
+inline photon_request request_on_rough(const render_settings& s)
+{
+    auto r = request_of_caustics(s.map.caustic_photons > 0 ? s.map.caustic_photons : std::max(1u, s.map.photons / 8));
+    r.ends = kernels::ROUGH_ENDS;
+    return r;
 }
 /// The photons of a picture with settings `s`, without those of a map of caustic photons.
 inline photon_request request_of(const render_settings& s, const scene_layout& layout)
@@ -59,17 +70,21 @@ inline photon_request request_of(const render_settings& s, const scene_layout& l
         r.kinds = kernels::OTHER_PHOTONS;
         r.most_paths = std::uint64_t{r.photons} * most_paths_per_other_photon;
     }
+    if (!layout.is_matte)
+        r.photons = 0;
     return r;
 }
-/// The photons of each map of a picture: the first, and a map of caustic photons, if the settings ask for it and the
-/// scene has caustics.
+/// The photons of each map of a picture: the first; a map of caustic photons, if the settings ask for it and the scene
+/// has caustics; those on rough surfaces, if the scene has light that only these show.
 inline std::vector<photon_request> requests_of(const render_settings& s, const scene_layout& layout)
 {
     std::vector<photon_request> all{request_of(s, layout)};
-    if (has_caustic_map(s) && may_have_caustics(layout)) {
+    if (has_caustic_map(s) && layout.is_matte && may_have_caustics(layout)) {
         all.push_back(request_of_caustics(s.map.caustic_photons));
         all.back().are_caustics_of_others = true;
     }
+    if (layout.needs_photons_on_rough && s.output.only != light_part::direct && s.output.only != light_part::indirect)
+        all.push_back(request_on_rough(s));
     return all;
 }
 

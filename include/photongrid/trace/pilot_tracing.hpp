@@ -95,7 +95,7 @@ void pilot_tracing<B>::trace(uint n)
     const auto first = static_cast<uint>(paths_.size());
     detail::photon_frames<B> frames(device_, std::size_t{n} * (settings_.map.photon_depth + 1));
     const uint traced
-        = trace_batch(device_, scene_, frames, path_batch<B>{n, first, request_.to_diffuse(), nullptr}, settings_);
+        = trace_batch(device_, scene_, frames, path_batch<B>{n, first, request_.ends, nullptr}, settings_);
     auto storable = device_.template make<uint>(n);
     path_tally<B> tally{device_.template make<glm::uvec4>(n), device_.template make<glm::uvec4>(n)};
     device_.template run<kernels::tally_path>(n, {.paths = n, .frames = traced, .kinds = request_.kinds},

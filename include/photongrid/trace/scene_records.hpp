@@ -85,11 +85,15 @@ struct layout_sources {
 
 /// The records of a scene, and their layout.
 struct scene_layout {
-    std::vector<glm::vec4> records;  ///< as trace/scene_layout.glsl describes them; positions are recentred
-    uint features = 0;               ///< scene_feature bits of the shapes, materials and lights in use
+    std::vector<glm::vec4> records; ///< as trace/scene_layout.glsl describes them; positions are recentred
+    uint features = 0;              ///< scene_feature bits of the shapes, materials and lights in use
+    /// Whether light without size reaches rough surfaces by smooth ones: only photons find it there
+    /// (render/rough_photons.hpp).
+    bool needs_photons_on_rough = false;
     std::uint64_t steps_per_ray = 0; ///< bound on the loop iterations of a ray, its shaft included (shape_kind::steps)
     dvec3 center{0};                 ///< subtracted from every position, m
-    glm::vec3 low{0};                ///< m; box of the Lambertian surfaces, recentred: where photons can be stored
+    bool is_matte = false;           ///< there is a Lambertian surface, which stores photons
+    glm::vec3 low{0};                ///< m; box of the Lambertian surfaces, recentred; of all, if there is none
     glm::vec3 high{0};               ///< m; its other corner
     mesh_layout meshes;
     environment_layout environment;
@@ -182,16 +186,29 @@ namespace detail {
                 require(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z) && std::isfinite(r.w),
                     "scene: a size or a power is too large for single precision; use smaller values");
             require_numbered(out_.records.size());
+            out_.needs_photons_on_rough = needs_photons_on_rough();
             return std::move(out_);
         }
 
     private:
-        uint features_of(const material& m) const
+        uint features_of(const material& m)
         {
             uint features = entry_of(m.kind).switches | (is_clear(m) ? has_clear : 0u);
-            for (const auto* part : parts_of(s_.materials, m))
-                features |= entry_of(part->kind).switches | (is_rough(*part) ? has_rough : 0u);
+            for (const auto* part : parts_of(s_.materials, m)) {
+                const bool rough = is_rough(*part), specular = !is_diffuse(*part) || is_coated(*part);
+                features |= entry_of(part->kind).switches | (rough ? has_rough : 0u);
+                is_smooth_ = is_smooth_ || (specular && (!rough || part->roughness_texture.map));
+            }
             return features;
+        }
+        /// Whether a light without size and a smooth surface that is specular are there, and a rough one.
+        bool needs_photons_on_rough() const
+        {
+            bool without_size = false;
+            for_each_light(s_, [&](const auto& list, auto kind) {
+                without_size = without_size || (!list.empty() && kind.samples == light_samples::once);
+            });
+            return without_size && is_smooth_ && (out_.features & has_rough) != 0;
         }
 
         /// Computes the bounds, the centre and the features.
@@ -222,7 +239,10 @@ namespace detail {
                 out_.features |= shared_.holds(m) ? has_instances : 0u;
                 out_.features |= m.surface->colors.empty() && !has_texture(s_.materials, of) ? 0u : has_textures;
             }
-            require(!diffuse.empty(), no_matte_shape);
+            require(!all.empty(), no_shape);
+            out_.is_matte = !diffuse.empty();
+            if (!out_.is_matte)
+                diffuse = all; // of which nothing is seen
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list) {
                     kind.add_bounds(all, l);
@@ -425,14 +445,15 @@ namespace detail {
         shared_surfaces shared_;
         scene_layout out_;
         std::vector<boxed_shape> shapes_;
-        double scale_ = 0;      ///< half the scene's diagonal, m
-        double round_size_ = 0; ///< the largest shape_kind::round_size, m
+        bool is_smooth_ = false; ///< a surface that reflects or refracts is smooth
+        double scale_ = 0;       ///< half the scene's diagonal, m
+        double round_size_ = 0;  ///< the largest shape_kind::round_size, m
     };
 } // namespace detail
 
 /// Lays a scene out for kernels. `before`: the sources of another scene's layout, whose parts this one shares where
 /// their sources are the same; null: none.
-/// \throws std::invalid_argument as check(scene) does, if no surface is Lambertian, or if a size or a power does not
+/// \throws std::invalid_argument as check(scene) does, if there is no shape, or if a size or a power does not
 ///         fit single precision.
 inline scene_layout lay_out(const scene& original, const layout_sources* before = nullptr)
 {

@@ -121,7 +121,7 @@ void photon_tracing<B>::advance()
         make_frames(std::uint64_t{missing} * t_.emitted / std::max(stored_, 1u) * 33 / 32);
     const auto paths = static_cast<uint>(std::min<std::uint64_t>(paths_, request_.most_paths - t_.emitted));
     const uint frames = trace_batch(device_, scene_, *frames_,
-        path_batch<B>{paths, static_cast<uint>(t_.emitted), request_.to_diffuse(), &guide_}, settings_);
+        path_batch<B>{paths, static_cast<uint>(t_.emitted), request_.ends, &guide_}, settings_);
 
     auto storable = device_.template make<uint>(paths);
     path_tally<B> tally{device_.template make<glm::uvec4>(paths), device_.template make<glm::uvec4>(paths)};

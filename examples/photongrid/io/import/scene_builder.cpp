@@ -244,8 +244,6 @@ imported_scene scene_builder::finish()
     if (!has_camera_ && settings_.camera_from.empty())
         add_default_camera();
     choose_settings();
-    if (!detail::has_matte_shape(made_))
-        fail_at(file_, "nothing in the scene is diffuse, so that no photon can be stored and nothing can be lit");
     if (const auto pair = detail::overlapping_glass(made_)) {
         const auto& second = (*pair)[1];
         fail_at(second.list == shape_kind<sphere>::list ? sphere_places_[second.index] : file_,
