@@ -88,6 +88,20 @@ TYPED_TEST_P(pictures, photons_on_rough_surfaces_equal_serials)
     }
 }
 
+/// Rays find what a lamp sends through the pane, so that no photon may bring it once more.
+TYPED_TEST_P(pictures, light_of_lamps_with_a_size_behind_a_pane_is_not_counted_twice)
+{
+    auto sun = plate_under_the_sun(rough_material(material_kind::metal, 0.7, 0.05), true);
+    sun.render.view.spp = 64;
+    auto lamp = sun, both = sun;
+    lamp.directional_lights.clear();
+    lamp.rectangle_lights = both.rectangle_lights
+        = {{"lamp", {-2, 2, -4}, {4, 0, 0}, {0, 0, 4}, dvec3(120)}}; // faces down, beside the sun
+    const double of_lamp = red_of(this->picture(lamp)), of_sun = red_of(this->picture(sun));
+    EXPECT_GT(of_lamp, 0.2 * of_sun);
+    EXPECT_NEAR(red_of(this->picture(both)), of_lamp + of_sun, 0.05 * of_lamp + 0.02 * of_sun);
+}
+
 /// A plate of metal is seen without any matte surface, in every way of drawing.
 TYPED_TEST_P(pictures, scenes_without_matte_surfaces_are_drawn)
 {

@@ -51,6 +51,7 @@ inline photon_request request_on_rough(const render_settings& s)
 {
     auto r = request_of_caustics(s.map.caustic_photons > 0 ? s.map.caustic_photons : std::max(1u, s.map.photons / 8));
     r.ends = kernels::ROUGH_ENDS;
+    r.most_paths = std::uint64_t{r.photons} * most_paths_per_other_photon; // each pass pays for them, too
     return r;
 }
 /// The photons of a picture with settings `s`, without those of a map of caustic photons.
