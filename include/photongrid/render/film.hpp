@@ -28,7 +28,7 @@ struct pass_pixels {
     // Empty unless output_settings::aov.
     std::vector<glm::vec4> searches; ///< sums over a pixel's searches: photons used, radius, photons visited, searches
     std::vector<glm::vec4> errors;   ///< x: sum of relative standard errors
-    pass_biases biases{};            ///< empty unless they are told (reports_bias)
+    pass_biases biases{};            ///< empty unless they are reported (reports_bias)
 
     /// All of its vectors, in the order of a film's bytes.
     std::array<std::vector<glm::vec4>*, 6> parts()
