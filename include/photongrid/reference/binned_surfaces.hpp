@@ -15,6 +15,21 @@
 
 namespace photongrid::reference {
 
+/// Whether a predicate holds for a part of the material of any surface.
+template <class Predicate>
+bool any_surface(const scene& s, const Predicate& holds)
+{
+    bool any = false;
+    const auto look = [&](const auto& list, auto) {
+        for (const auto& x : list)
+            for (const auto* part : parts_of(s.materials, s.materials[x.material]))
+                any = any || holds(*part);
+    };
+    for_each_shape(s, look);
+    look(s.meshes, nullptr);
+    return any;
+}
+
 /// The bins of those surfaces that a predicate of their materials chooses. Each has a number for either side.
 class binned_surfaces {
 public:

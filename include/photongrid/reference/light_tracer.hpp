@@ -65,11 +65,7 @@ public:
         if (lights_.empty())
             return;
         paths_per_group_ = (settings.paths + light_groups - 1) / light_groups;
-        bool shiny = false;
-        for (const auto& m : s.materials)
-            for (const auto* part : parts_of(s.materials, m))
-                shiny = shiny || !is_diffuse(*part) || is_coated(*part);
-        if (shiny)
+        if (any_surface(s, [](const material& m) { return !is_diffuse(m) || is_coated(m); }))
             bins_ = {s, shapes, settings, [&](const material& m) { return is_diffuse(s.materials, m); }};
         if (bins_.size() == 0)
             return;

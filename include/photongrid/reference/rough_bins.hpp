@@ -23,11 +23,9 @@ public:
         const render_observer& observer, reference_stats& stats)
         : materials_(&s.materials)
     {
-        bool is_smooth = false;
-        for (const auto& m : s.materials)
-            for (const auto* part : parts_of(s.materials, m))
-                is_smooth = is_smooth
-                    || ((!is_diffuse(*part) || is_coated(*part)) && (!is_rough(*part) || part->roughness_texture.map));
+        const bool is_smooth = any_surface(s, [](const material& m) {
+            return (!is_diffuse(m) || is_coated(m)) && (!is_rough(m) || m.roughness_texture.map);
+        });
         for (const auto& l : shapes.lights())
             if (!l.is_visible())
                 lights_.push_back(l);
