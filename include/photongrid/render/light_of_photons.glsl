@@ -1,5 +1,5 @@
-// The light that photons bring to the ends of eye rays on rough surfaces: radiance, times throughput. The photons near a
-// point are a density of power, whose share that goes to the eye is the BSDF's of each one's direction.
+// The light that photons bring to the ends of eye rays on rough surfaces: radiance, times throughput. The photons near
+// a point are a density of power, of which each one's BSDF sends its share to the eye.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>

@@ -44,8 +44,8 @@ inline uint event_before(vec4 position)
 {
     return uint(position.w) >> EVENT_BEFORE_SHIFT;
 }
-// What ends paths besides absorption: nothing; the first diffuse surface, as those of caustic photons; the first surface
-// that is not smooth, as those of photons on rough surfaces (rough_photons.hpp).
+// What ends paths besides absorption: nothing; the first diffuse surface, as those of caustic photons; the first
+// surface that is not smooth, as those of photons on rough surfaces (rough_photons.hpp).
 const uint NOTHING_ENDS = 0u;
 const uint DIFFUSE_ENDS = 1u;
 const uint ROUGH_ENDS = 2u;
