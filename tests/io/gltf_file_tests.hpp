@@ -300,6 +300,10 @@ namespace {
                 "KHR_materials_volume": {"thicknessFactor": 1},
                 "KHR_materials_ior": {"ior": 1.4}})",
                 "glass", material_kind::glass, dvec3(1), 1.4, 0},
+            {R"("pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5,
+                "baseColorFactor": [0.9, 0.8, 0.7, 1]}, "extensions":
+                {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.4}})",
+                "pane", material_kind::thin_glass, {0.9, 0.8, 0.7}, 1.4, 0.5},
         };
         for (const auto& c : cases) {
             const auto made = parse_gltf("s.gltf",

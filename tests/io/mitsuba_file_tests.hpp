@@ -366,6 +366,10 @@ namespace {
                  "<string name=\"int_ior\" value=\"Water\"/><float name=\"ext_ior\" value=\"1\"/><rgb "
                  "name=\"specular_transmittance\" value=\"1 .5 .25\"/>"),
                 material_kind::glass, {1, 0.5, 0.25}, 1.333, 0, 1},
+            {bsdf("thindielectric",
+                 "<float name=\"int_ior\" value=\"1.3\"/><float name=\"ext_ior\" value=\"1\"/><rgb "
+                 "name=\"specular_transmittance\" value=\"1 .5 .25\"/>"),
+                material_kind::thin_glass, {1, 0.5, 0.25}, 1.3, 0, 1},
             {bsdf("roughdielectric",
                  ggx("0.0625")
                      + "<float name=\"int_ior\" value=\"1.8\"/><float name=\"ext_ior\" "

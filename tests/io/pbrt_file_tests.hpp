@@ -220,6 +220,7 @@ namespace {
             {"\"dielectric\" \"float eta\" 1.8 \"float roughness\" 0.0625 \"bool remaproughness\" false", "rough",
                 material_kind::glass, dvec3(1), 1.8, 0.25},
             {"\"dielectric\" \"float roughness\" 0.0625", "remapped", material_kind::glass, dvec3(1), 1.5, 0.5},
+            {"\"thindielectric\" \"float eta\" 1.3", "pane", material_kind::thin_glass, dvec3(1), 1.3, 0},
             {"\"coateddiffuse\" \"float roughness\" 0 \"rgb reflectance\" [ 1 0 0 ]", "plastic", material_kind::plastic,
                 {1, 0, 0}, 1.5, 0},
             {"\"conductor\" \"rgb eta\" [ 1.65746 0.880369 0.521229 ] \"rgb k\" [ 9.223869 6.269523 4.837001 ] "
@@ -232,7 +233,9 @@ namespace {
         for (const auto& c : cases) {
             const auto made = pbrt_scene(
                 "Material " + std::string(c.text) + "\n" + ball + "Material \"diffuse\"\nTranslate 9 0 0\n" + ball);
-            const auto& m = made.scene.materials.at(made.scene.spheres.at(0).material);
+            const bool is_mesh = c.kind == material_kind::thin_glass; // smooth panes are
+            const auto& m = made.scene.materials.at(
+                is_mesh ? made.scene.meshes.at(0).material : made.scene.spheres.at(0).material);
             EXPECT_EQ(m.kind, c.kind) << c.name;
             expect_near(m.reflectance, c.reflectance, 1e-9);
             EXPECT_EQ(m.index_of_refraction, c.index) << c.name;

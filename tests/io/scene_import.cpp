@@ -1,5 +1,6 @@
 // Scenes of other programs.
 #include "five_formats_tests.hpp"
+#include "glass_body_tests.hpp"
 #include "gltf_file_tests.hpp"
 #include "mitsuba_file_tests.hpp"
 #include "named_file_tests.hpp"

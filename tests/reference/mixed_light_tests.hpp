@@ -66,6 +66,35 @@ namespace {
             expect_photons_equal_eye_paths(s);
     }
 
+    // What a frosted pane reflects, and what passes it.
+    TEST(validation, frosted_panes_under_all_kinds_of_lights_equal_eye_paths)
+    {
+        for (const auto& s :
+            square_and_ball_under_all_lights({"frosted pane", material_kind::thin_glass, {0.9, 0.8, 0.7}, 1.5, 0.45},
+                {"frosted", material_kind::thin_glass, dvec3(0.95), 1.5, 0.8}))
+            expect_photons_equal_eye_paths(s);
+    }
+
+    // Photons straight from the lamp, and those that other surfaces have sent, through panes alone and in mixtures.
+    TEST(validation, photons_through_panes_equal_eye_paths)
+    {
+        auto s = with_meshes(small_cornell());
+        s.name = "panes";
+        s.spheres.clear();
+        const auto pane = static_cast<std::uint32_t>(s.materials.size());
+        s.materials.push_back({"pane", material_kind::thin_glass, {0.9, 0.7, 0.5}, 1.8});
+        s.materials.push_back(mixture_of(0, pane, 0.7, {}));
+        s.meshes.push_back(
+            {"", std::make_shared<const mesh>(textured_rectangle({0.1f, 0.7f, 0.1f}, {0.8f, 0, 0}, {0, 0, 0.8f})),
+                glm::dmat3(1), dvec3(0), pane});
+        s.meshes.push_back(
+            {"", std::make_shared<const mesh>(textured_rectangle({0.2f, 0.1f, 0.4f}, {0.5f, 0, 0}, {0, 0.5f, 0.2f})),
+                glm::dmat3(1), dvec3(0), pane + 1});
+        s.render.view.light_samples = 16;
+        s.render.view.spp = 64;
+        expect_photons_equal_eye_paths(s);
+    }
+
     // Photons that a coat reflects, and photons that it lets pass, which the map holds.
     TEST(validation, plastic_under_all_kinds_of_lights_equals_eye_paths)
     {

@@ -60,6 +60,49 @@ TYPED_TEST_P(mixtures, sheets_stop_the_light_of_their_opacity)
     }
 }
 
+/// What two faces of glass let pass, with all reflections between them (Stokes 1862).
+inline double passes_pane(double cosine, double index)
+{
+    const double sine = std::sqrt(1 - cosine * cosine) / index, inside = std::sqrt(1 - sine * sine),
+                 s = (cosine - index * inside) / (cosine + index * inside),
+                 p = (inside - index * cosine) / (inside + index * cosine), face = (s * s + p * p) / 2;
+    return (1 - face) / (1 + face);
+}
+
+/// Shadow rays go straight on through a pane, from either side, whatever else it is mixed with.
+TYPED_TEST_P(mixtures, panes_let_pass_what_two_faces_do_not_reflect)
+{
+    const dvec3 tint(0.9, 0.5, 0.2);
+    auto s = rectangle_in_even_light(textured_rectangle({-1, -1, 0}, {4, 0, 0}, {0, 3, 0}), {});
+    s.materials.push_back({"pane", material_kind::thin_glass, tint, 1.7});
+    s.materials.push_back({"black", material_kind::lambertian, dvec3(0)});
+    s.materials.push_back(mixture_of(2, 1, 0.25, {}));
+    s.materials.push_back(mixture_of(1, 2, 0.25, {}));
+    s.materials[4].opacity = 0.5;
+    const std::vector<dvec3> points(16, {0.3, 0.4, 0.1}), normals(16, {0, 0, 1});
+    for (const dvec3& towards : {dvec3(0, 0, 1), dvec3(0.6, 0, 0.8), dvec3(0.3, 0.8, 0.25)}) {
+        const dvec3 d = glm::normalize(towards);
+        s.directional_lights = {{"sun", -d, dvec3(2)}};
+        s.environment_lights.clear();
+        const auto bare = direct_light_at(this->b(), s, points, normals, 1);
+        for (const bool turned : {false, true})
+            for (const std::uint32_t m : {1u, 3u, 4u}) {
+                auto behind = s;
+                auto sheet = textured_rectangle({-9, -9, 0.5f}, {18, 0, 0}, {0, 18, 0});
+                if (turned)
+                    for (auto& t : sheet.triangles)
+                        std::swap(t.y, t.z);
+                behind.meshes.push_back({"", std::make_shared<const mesh>(sheet), glm::dmat3(1), dvec3(0), m});
+                const auto found = direct_light_at(this->b(), behind, points, normals, 1);
+                const double share = m == 1 ? 1 : m == 3 ? 0.25 : 0.5 * 0.75, past = m == 4 ? 0.5 : 0;
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(
+                        double(found[0][c]) / double(bare[0][c]), past + share * tint[c] * passes_pane(d.z, 1.7), 1e-5)
+                        << m << turned << c;
+            }
+    }
+}
+
 /// The eye sees the share of a sheet that is its opacity, so photons on it are of all the light that it receives.
 TYPED_TEST_P(mixtures, what_is_clear_in_part_receives_all_light)
 {
@@ -235,7 +278,8 @@ TYPED_TEST_P(mixtures, account_for_every_path)
     expect_an_exact_account(this->traced(s), 20000);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(mixtures, sheets_stop_the_light_of_their_opacity, what_is_clear_in_part_receives_all_light,
+REGISTER_TYPED_TEST_SUITE_P(mixtures, sheets_stop_the_light_of_their_opacity,
+    panes_let_pass_what_two_faces_do_not_reflect, what_is_clear_in_part_receives_all_light,
     what_is_clear_is_not_seen_and_what_is_opaque_is_as_before, matte_parts_add_up_by_their_shares,
     of_all_kinds_have_the_albedo_of_their_parts, of_one_part_and_even_textures_are_as_plain_materials,
     store_all_photons_that_reach_a_matte_part, equal_the_serial_backends, account_for_every_path);

@@ -1,4 +1,5 @@
 #include <photongrid/io/gltf_file.hpp>
+#include <photongrid/io/import/glass_bodies.hpp>
 #include <photongrid/io/import/scene_files.hpp>
 #include <photongrid/io/mitsuba_file.hpp>
 #include <photongrid/io/obj_scene.hpp>
@@ -126,6 +127,8 @@ namespace {
 imported_scene import_scene(const std::string& path, const import_settings& settings)
 {
     auto made = read_any(path, settings);
+    const auto format = format_of_file(path);
+    mend_glass(made, path, format == scene_format::pbrt || format == scene_format::mitsuba);
     if (!settings.environment.empty())
         set_environment(made.scene, settings.environment);
     if (!settings.camera_from.empty()) {

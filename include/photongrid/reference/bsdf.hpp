@@ -18,6 +18,20 @@ inline double fresnel_reflectance(double cos_i, double n_i, double cos_t, double
     return 0.5 * (s * s + p * p);
 }
 
+/// The share of light that a pane reflects, of one that meets it at this cosine: with all reflections between its
+/// faces.
+inline double pane_reflectance(const material& m, double cosine)
+{
+    const double n = m.index_of_refraction, sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) / n,
+                 face = fresnel_reflectance(std::min(1.0, cosine), 1, std::sqrt(1 - sine * sine), n);
+    double all = face, inside = (1 - face) * (1 - face) * face; // off the first face; off the second one, and out
+    for (int turn = 0; turn < 1000 && inside > 1e-18; ++turn) {
+        all += inside;
+        inside *= face * face;
+    }
+    return all;
+}
+
 /// A ray's continuation from a specular surface.
 struct specular_bounce {
     dvec3 direction{0, 0, 1}; ///< unit
@@ -38,6 +52,10 @@ inline specular_bounce specular(const material& m, const dvec3& d, const dvec3& 
 {
     const double d_dot_n = glm::dot(d, normal);
     const specular_bounce reflected{glm::normalize(d - 2 * d_dot_n * normal)};
+    if (is_thin(m)) {
+        const bool passes = !(u < pane_reflectance(m, std::abs(d_dot_n)));
+        return passes ? specular_bounce{d, 1, true} : reflected;
+    }
     if (!refracts(m))
         return reflected;
     const bool entering = d_dot_n < 0;
@@ -93,7 +111,11 @@ inline specular_bounce rough(const material& m, const hit& h, const dvec3& d, ra
     lost.weight = 0;
     if (!(met > 0))
         return lost;
-    auto bounce = specular(m, d, side * facet, refracts(m) ? random() : 0);
+    auto bounce = specular(m, d, side * facet, refracts(m) || is_thin(m) ? random() : 0);
+    if (is_thin(m) && bounce.refracted) { // as what is reflected, on the other side
+        const dvec3 reflected = d + 2 * met * facet;
+        bounce.direction = reflected - 2 * glm::dot(reflected, n.shading) * n.shading;
+    }
     const double up = bounce.refracted ? -1 : 1, leaving = up * glm::dot(bounce.direction, n.shading),
                  geometric = up * glm::dot(bounce.direction, n.geometric);
     if (!(leaving > 0) || !(geometric > 0))
@@ -109,8 +131,17 @@ inline double rough_bsdf(const material& m, const hit& h, const dvec3& d, const 
 {
     const facing_normals n(h, d);
     const double in = glm::dot(towards, n.shading), out = -glm::dot(d, n.shading);
-    if (in * glm::dot(towards, n.geometric) <= 0 || (in < 0 && !refracts(m)))
+    if (in * glm::dot(towards, n.geometric) <= 0 || (in < 0 && !refracts(m) && !is_thin(m)))
         return 0;
+    if (is_thin(m)) {
+        const dvec3 other = in > 0 ? towards : towards - 2 * in * n.shading, facet = glm::normalize(other - d);
+        const double met = -glm::dot(d, facet), cosine = glm::dot(facet, n.shading), alpha = m.roughness * m.roughness;
+        if (!(met > 0) || !(cosine > 0))
+            return 0;
+        const double spread = cosine * cosine * (alpha * alpha - 1) + 1, reflected = pane_reflectance(m, met);
+        return (in > 0 ? reflected : 1 - reflected) * alpha * alpha / (std::numbers::pi * spread * spread)
+            * unhidden(std::abs(in), alpha) * unhidden(out, alpha) / (4 * std::abs(in) * out);
+    }
     const bool outside = is_coated(m) || !(glm::dot(h.normal, d) > 0); // a coat is on both sides
     const double n_out = outside ? 1 : m.index_of_refraction, n_far = outside ? m.index_of_refraction : 1,
                  n_in = in > 0 ? n_out : n_far;
@@ -141,11 +172,13 @@ inline specular_bounce specular(const material& m, const hit& h, const dvec3& d,
 {
     if (is_rough(m))
         return rough(m, h, d, random);
-    const double u = refracts(m) ? random() : 0;
+    const double u = refracts(m) || is_thin(m) ? random() : 0;
     if (h.shading == h.normal)
         return specular(m, d, h.normal, u);
     const facing_normals n(h, d);
     auto bounce = specular(m, d, glm::dot(h.normal, d) > 0 ? -n.shading : n.shading, u);
+    if (is_thin(m) && bounce.refracted)
+        return bounce;
     const double side = glm::dot(bounce.direction, n.geometric);
     if (bounce.refracted ? side < 0 : side > 0) {
         bounce.adjoint = std::min(8.0,

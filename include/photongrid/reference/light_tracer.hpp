@@ -165,10 +165,10 @@ private:
                 r = {h.position, r.direction, h.shape};
                 continue;
             }
-            from_light = false;
             if (bounce.adjoint == 0 || bounce.weight == 0)
                 return added;
-            power *= (is_coated(m) ? dvec3(1) : met.reflectance()) * (bounce.adjoint * bounce.weight);
+            from_light = from_light && goes_straight_on(m, bounce);
+            power *= (is_coated(m) ? dvec3(1) : tint(met, bounce)) * (bounce.adjoint * bounce.weight);
             r = {h.position, bounce.direction, h.shape};
         }
         return added;

@@ -49,7 +49,7 @@ public:
                 r = {h.position, r.direction, h.shape};
                 continue;
             }
-            come = 0;
+            const double before = std::exchange(come, 0);
             const auto met = surfaces_.met(h, random);
             const auto& m = met.of();
             specular_bounce bounce;
@@ -88,7 +88,12 @@ public:
                             * (highlight(m, h, r.direction, random)
                                 + on_rough_.radiance(m, h, r.direction, random, group));
                     bounce = specular(m, h, r.direction, random);
-                    throughput *= met.reflectance() * (bounce.radiance_scale * bounce.weight);
+                    throughput *= tint(met, bounce) * (bounce.radiance_scale * bounce.weight);
+                }
+                if (!by_coat && goes_straight_on(m, bounce)) {
+                    come = before + h.t;
+                    r = {h.position, r.direction, h.shape};
+                    continue;
                 }
                 r = {h.position, bounce.direction, h.shape};
                 through_specular = true;
@@ -131,7 +136,7 @@ private:
             = rough_bsdf(m, h, d, seen.towards) * std::abs(glm::dot(seen.towards, facing_normals(h, d).shading));
         if (!(reflected > 0) || seen.arriving == dvec3(0))
             return dvec3(0);
-        const double passes = surfaces_.share_through({h.position, seen.towards, h.shape}, seen.distance, seen.shape);
+        const dvec3 passes = surfaces_.share_through({h.position, seen.towards, h.shape}, seen.distance, seen.shape);
         return seen.arriving * (passes * reflected / light.probability);
     }
 
@@ -147,11 +152,12 @@ private:
             cosine *= passes_coat(m, h, -d, random);
         if (!(cosine > 0) || seen.arriving == dvec3(0))
             return dvec3(0);
-        cosine *= surfaces_.share_through({h.position, d, h.shape}, seen.distance, seen.shape);
+        const dvec3 passing
+            = seen.arriving * surfaces_.share_through({h.position, d, h.shape}, seen.distance, seen.shape);
         if (!(seen.density > 0))
-            return seen.arriving * (cosine / light.probability);
+            return passing * (cosine / light.probability);
         const double by_light = light.probability * seen.density;
-        return seen.arriving * (cosine / (by_light + by_surface));
+        return passing * (cosine / (by_light + by_surface));
     }
 
     std::vector<diffuse_base> bases_; ///< by material

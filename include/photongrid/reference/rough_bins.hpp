@@ -135,8 +135,8 @@ private:
                                              : specular_of_light(m, h, r.direction, random);
             if (bounce.adjoint == 0 || bounce.weight == 0)
                 return;
-            from_light = false;
-            power *= (is_coated(m) ? dvec3(1) : met.reflectance()) * (bounce.adjoint * bounce.weight);
+            from_light = from_light && goes_straight_on(m, bounce);
+            power *= (is_coated(m) ? dvec3(1) : tint(met, bounce)) * (bounce.adjoint * bounce.weight);
             r = {h.position, bounce.direction, h.shape};
         }
     }

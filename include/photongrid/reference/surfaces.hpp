@@ -2,7 +2,7 @@
 // the values of textures.
 #pragma once
 
-#include <photongrid/reference/intersect.hpp>
+#include <photongrid/reference/bsdf.hpp>
 #include <photongrid/reference/random_stream.hpp>
 #include <photongrid/reference/texture.hpp>
 
@@ -39,13 +39,27 @@ private:
     dvec3 reflectance_;
 };
 
+/// Whether light goes straight on through a pane.
+inline bool goes_straight_on(const material& m, const specular_bounce& b)
+{
+    return is_thin(m) && !is_rough(m) && b.refracted;
+}
+
+/// The factor on light that a surface which is not matte reflects or refracts.
+inline dvec3 tint(const met_material& met, const specular_bounce& b)
+{
+    const bool is_white = is_thin(met.of()) && !is_rough(met.of()) && !b.refracted;
+    return is_white ? dvec3(1) : met.reflectance();
+}
+
 /// The surfaces of a scene.
 class surfaces {
 public:
     /// The arguments must outlive it.
     surfaces(const scene& s, const geometry& shapes)
         : materials_(s.materials), shapes_(shapes),
-          any_clear_(std::any_of(s.materials.begin(), s.materials.end(), [](const material& m) { return is_clear(m); }))
+          any_clear_(std::any_of(s.materials.begin(), s.materials.end(),
+              [](const material& m) { return is_clear(m) || is_smooth_pane(m); }))
     {
     }
 
@@ -76,23 +90,41 @@ public:
     }
 
     /// The share of light that shapes other than `target` let pass up to `far`, m.
-    double share_through(ray r, double far, std::uint32_t target) const
+    dvec3 share_through(ray r, double far, std::uint32_t target) const
     {
         if (!any_clear_)
-            return shapes_.blocked(r, far, target) ? 0 : 1;
-        double share = 1;
-        while (share > 0) {
+            return dvec3(shapes_.blocked(r, far, target) ? 0 : 1);
+        dvec3 share(1);
+        while (share != dvec3(0)) {
             const hit h = shapes_.nearest(r);
             if (!(h.t < far) || h.shape == target)
                 return share;
-            share *= h.light != nothing ? 0 : 1 - opacity(materials_[h.material], h);
+            share *= h.light != nothing ? dvec3(0) : light_past(h, r.direction);
             r = {h.position, r.direction, h.shape};
             far -= h.t;
         }
-        return 0;
+        return dvec3(0);
     }
 
 private:
+    /// The share of light of direction d that goes straight on at a hit.
+    dvec3 light_past(const hit& h, const dvec3& d) const
+    {
+        const auto& m = materials_[h.material];
+        const double opacity_here = opacity(m, h),
+                     second = is_mixture(m) ? m.share * number_at(m.share_texture, h.coordinates) : 1;
+        const auto straight = [&](std::uint32_t number) {
+            const met_material met(materials_[number], number, h);
+            if (!is_thin(met.of()) || is_rough(met.of()))
+                return dvec3(0);
+            return met.reflectance() * (1 - pane_reflectance(met.of(), -glm::dot(facing_normals(h, d).shading, d)));
+        };
+        dvec3 panes = second * straight(is_mixture(m) ? m.parts[1] : h.material);
+        if (is_mixture(m))
+            panes += (1 - second) * straight(m.parts[0]);
+        return 1 - opacity_here + opacity_here * panes;
+    }
+
     static double opacity(const material& m, const hit& h)
     {
         return m.opacity * number_at(m.opacity_texture, h.coordinates);

@@ -20,16 +20,18 @@
 namespace photongrid {
 
 /// How a surface scatters light. `metal` is a coloured mirror, which may be rough; `plastic` is Lambertian under a
-/// clear coat, which may be rough; a `mixture` scatters a share of the light as one material, the rest as another.
-enum class material_kind { lambertian, mirror, metal, glass, plastic, mixture };
+/// clear coat, which may be rough; a `mixture` scatters a share of the light as one material, the rest as another;
+/// `thin_glass` is a pane of glass as one surface.
+enum class material_kind { lambertian, mirror, metal, glass, plastic, mixture, thin_glass };
 
 /// A material.
 struct material {
     std::string name;                               ///< any text; in a scene file, the key by which shapes refer to it
     material_kind kind = material_kind::lambertian; ///< how it scatters light
-    /// Rgb, 0 to 1; of glass, the transmittance per crossing; of plastic, what is below the coat.
+    /// Rgb, 0 to 1; of glass, the transmittance per crossing, of thin glass that of what passes; of plastic, what is
+    /// below the coat.
     dvec3 reflectance{0.5};
-    double index_of_refraction = 1.5; ///< of glass and of the coat of plastic, 1 to 10; outside is air, 1
+    double index_of_refraction = 1.5; ///< of glass, thin or not, and of the coat of plastic, 1 to 10; outside is air, 1
     double roughness = 0;  ///< but of Lambertian surfaces and mirrors, 0 to 1: the square root of GGX's alpha; below
                            ///< 0.001 it is smooth
     texture_use texture{}; ///< factor on the reflectance; on meshes with texture coordinates, as all textures
@@ -51,6 +53,7 @@ enum class surface_kind : std::uint32_t {
     refracting = 2, ///< reflects or refracts; bodies must not overlap
     coated = 3,     ///< reflects, or is diffuse below its coat
     mixed = 4,      ///< that of one of its parts
+    thin = 5,       ///< reflects, or lets light pass straight on; if it is rough, spread by facets
 };
 
 /// A member of `material` that a kind has.
@@ -94,6 +97,8 @@ namespace detail {
     }
     inline constexpr material_field glass_fields[]
         = {index_of_refraction(), reflectance("transmittance", 1), roughness, opacity};
+    inline constexpr material_field thin_glass_fields[]
+        = {index_of_refraction(1.5), reflectance("transmittance", 1), roughness, opacity};
     inline constexpr material_field plastic_fields[]
         = {reflectance("reflectance"), index_of_refraction(1.5), roughness_of_coat, opacity};
     inline constexpr material_field mixture_fields[] = {
@@ -109,6 +114,7 @@ inline constexpr std::array material_kinds{
     material_entry{material_kind::plastic, "plastic", surface_kind::coated, 1u << 19 | 1u << 4,
         detail::plastic_fields}, // reflects, too
     material_entry{material_kind::mixture, "mixture", surface_kind::mixed, 1u << 21, detail::mixture_fields},
+    material_entry{material_kind::thin_glass, "thin_glass", surface_kind::thin, 1u << 5, detail::thin_glass_fields},
 };
 
 static_assert(
@@ -134,7 +140,7 @@ namespace detail {
 /// Whether a material is a mixture of two others. What follows knows nothing of these: see scene/mixture.hpp.
 inline bool is_mixture(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::mixed; }
 
-/// Whether some light goes straight on through surfaces of this material.
+/// Whether the material has an opacity: some light does not meet its surfaces.
 inline bool is_clear(const material& m) { return m.opacity < 1 || m.opacity_texture.map; }
 
 /// Whether surfaces of this material store photons.
@@ -160,6 +166,12 @@ inline bool is_rough(const material& m)
     };
     return m.roughness >= 0.001 && std::any_of(fields.begin(), fields.end(), says_so);
 }
+
+/// Whether surfaces of this material are panes of thin glass.
+inline bool is_thin(const material& m) { return detail::entry_of(m.kind).surface == surface_kind::thin; }
+
+/// Whether such panes let light pass straight on, here or where a texture has the roughness 0.
+inline bool is_smooth_pane(const material& m) { return is_thin(m) && (!is_rough(m) || m.roughness_texture.map); }
 
 /// The parameter alpha of the distribution of facets (GGX); 0 of smooth surfaces.
 inline double alpha_of(const material& m) { return is_rough(m) ? m.roughness * m.roughness : 0; }

@@ -276,13 +276,15 @@ namespace detail {
 
     inline constexpr const char* no_shape = "shapes: there is none; add one to see";
 
-    /// Only meshes are clear, and textures need coordinates, which only they have.
+    /// Light goes straight on through meshes only, and textures need coordinates, which only they have.
     template <class Part>
     void check_material_of(const Part& part, const std::vector<material>& materials)
     {
         const auto& m = materials[part.material];
         constexpr bool is_mesh = requires { part.surface->texture_coordinates; };
         require(is_mesh || !is_clear(m), "material: has an opacity, which only meshes may have");
+        require(is_mesh || !any_part(materials, m, [](const material& p) { return is_smooth_pane(p); }),
+            "material: is smooth thin glass, which only meshes may be; make it a mesh");
         if constexpr (is_mesh)
             if (!part.surface->texture_coordinates.empty())
                 return;

@@ -174,6 +174,11 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool
     bool ends = surface == NO_SURFACE || (args.ends != NOTHING_ENDS && surface == DIFFUSE_SURFACE);
     if (ends || !(r.x < survival))
         return;
+    if (goes_straight_on(s)) {
+        pass_clear(hit, s, surface, photon, round_by);
+        direction.w = color_code(s.material.reflectance);
+        return;
+    }
     Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(photon.id, photon.frame, 0u, args.seed));
     // r.x is uniform below `survival`, so the same number also decides whether another facet hides the photon. What
     // hides it from a coat's reflection goes to the base.

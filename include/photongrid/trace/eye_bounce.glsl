@@ -190,8 +190,8 @@ const uint FACET = 4000u; // stratified too, and the same in all branches
 const uint PASSES = 10000u;
 const uint PART = 20000u;
 
-// The ray passes a surface that is clear in part.
-void pass_clear(Hit hit, vec3 d, float share)
+// The ray passes a surface that is clear in part, or a pane.
+void pass_clear(Hit hit, vec3 d, vec3 share)
 {
     uint hits = uint(direction.w) + 1u;
     if (hits > args.depth) {
@@ -297,10 +297,19 @@ void scatter(uint i, Hit hit, Surface s, float met)
         share = scaled;
     }
     float branch_share = 1.0f;
-    if (GLASS && s.material.kind == GLASS_SURFACE) {
+    if (GLASS && is_glass(s.material)) {
         Branch b = branch_of(i, REFLECTS + hits, facet.f.reflected);
         s = leaving_by(s, way_of(s, b.first));
         branch_share = b.share;
+        if (goes_straight_on(s)) {
+            precise float passing = branch_share * met;
+            pass_clear(hit, s.d, s.material.reflectance * passing);
+            return;
+        }
+        if (CLEAR && is_thin(s.material)) {
+            precise vec3 of_way = vec3(throughput) * s.material.reflectance * met;
+            reflected = of_way;
+        }
     }
     Scattered l = scatter_sample(s, facet, r.x, r.y, uvec4(0u, 0u, 0u, 0u));
     precise float leaving = share * (branch_share * l.radiance_scale) * l.unhidden;
@@ -343,7 +352,7 @@ void kernel(uint i)
     if (CLEAR) {
         Branch b = branch_if_any(i, PASSES + hits, opacity_at(hit.material, on_mesh, number));
         if (!b.first) {
-            pass_clear(hit, d, b.share);
+            pass_clear(hit, d, vec3(b.share, b.share, b.share));
             return;
         }
         met = b.share;

@@ -1,8 +1,10 @@
 // Materials, read from the scene buffer. Included by kernels after their scene buffer. How light leaves surfaces:
 // trace/scatter.glsl.
+SWITCH(22, CLEAR) // some light goes straight on through surfaces
+
 struct Material {
     vec3 reflectance;          // of glass: transmittance per crossing
-    uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE, COATED_SURFACE
+    uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE, COATED_SURFACE, THIN_SURFACE
     float index_of_refraction; // of glass and coats
     float alpha;               // of rough surfaces (trace/microfacet.glsl); 0: smooth
 };
@@ -26,9 +28,15 @@ Material material_of(uint number)
     return m;
 }
 
+bool is_thin(Material m)
+{
+    return m.kind == THIN_SURFACE;
+}
+
+// Whether light leaves on both sides of the surface.
 bool is_glass(Material m)
 {
-    return m.kind == GLASS_SURFACE;
+    return m.kind == GLASS_SURFACE || is_thin(m);
 }
 
 bool stores_photons(Material m)

@@ -1,6 +1,5 @@
-// Surfaces that are clear in places, and mixtures of two materials. Included by kernels after trace/scene_layout.glsl.
+// Surfaces that are clear in places, and mixtures of two materials. Included by kernels after trace/materials.glsl.
 SWITCH(21, MIXTURES)
-SWITCH(22, CLEAR)
 
 // How many vectors mesh_color.glsl writes for a hit: one; in scenes with mixtures or clear surfaces one for each of two
 // parts, and one for opacity and share.

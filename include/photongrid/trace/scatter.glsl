@@ -42,14 +42,22 @@ bool is_delta(Surface s)
     return s.way != BY_BASE && !has_facets(s);
 }
 
+// Whether light goes straight on, as through a smooth pane.
+bool goes_straight_on(Surface s)
+{
+    return CLEAR && s.way == BY_REFRACTION && is_thin(s.material) && !has_facets(s);
+}
+
 // The surface for light that leaves by `way`. A coated one gets the reflectance of that way: white for the coat; for
-// the base, the share that gets out through the coat.
+// the base, the share that gets out through the coat. What a smooth pane reflects is white, too.
 Surface leaving_by(Surface s, uint way)
 {
     s.way = way;
     if (is_coated(s))
         s.material.reflectance
             = way == BY_BASE ? under_coat(coat_of(s.number), s.material.reflectance) : vec3(1.0f, 1.0f, 1.0f);
+    if (CLEAR && is_thin(s.material) && way == BY_REFLECTION && !has_facets(s))
+        s.material.reflectance = vec3(1.0f, 1.0f, 1.0f);
     return s;
 }
 
@@ -58,7 +66,7 @@ uint way_of(Surface s, bool reflected)
 {
     if (reflected)
         return BY_REFLECTION;
-    return s.material.kind == GLASS_SURFACE ? BY_REFRACTION : BY_BASE;
+    return is_glass(s.material) ? BY_REFRACTION : BY_BASE;
 }
 
 // A surface that a ray of direction d meets at a hit. The shading normal is turned towards the ray where it looks away
@@ -90,6 +98,17 @@ struct Facet {
     Fresnel f;   // how it divides the light
 };
 
+// What a pane does, if its front does f: both its faces, with all reflections between them (Stokes 1862). What passes
+// a facet leaves as what it reflects would, on the other side.
+Fresnel through_pane(Surface s, vec3 facet, Fresnel f)
+{
+    precise float both = 2.0f * f.reflected / (1.0f + f.reflected);
+    f.reflected = both;
+    f.radiance_scale = 1.0f;
+    f.refracted = has_facets(s) ? reflect_direction(reflect_direction(s.d, facet), s.shading) : s.d;
+    return f;
+}
+
 // `u`, `v` from 0 to 1 choose the facet of a rough surface.
 Facet facet_met(Surface s, float u, float v)
 {
@@ -98,10 +117,12 @@ Facet facet_met(Surface s, float u, float v)
     if (has_facets(s) && s.material.kind != LAMBERTIAN_SURFACE)
         facet.normal = from_basis(visible_facet(in_basis(-s.d, s.shading), s.material.alpha, u, v), s.shading);
     facet.f = total_reflection(s.d);
-    bool is_refracting = GLASS && s.material.kind == GLASS_SURFACE;
-    if (is_refracting || is_coated(s)) // a coat is met from outside on both sides of the surface
-        facet.f = fresnel(s.d, s.outside || !is_refracting ? facet.normal : -facet.normal,
-            s.material.index_of_refraction);
+    bool is_body = GLASS && s.material.kind == GLASS_SURFACE;
+    bool is_pane = GLASS && is_thin(s.material);
+    if (is_body || is_pane || is_coated(s)) // coats and panes are met from outside on both sides of the surface
+        facet.f = fresnel(s.d, s.outside || !is_body ? facet.normal : -facet.normal, s.material.index_of_refraction);
+    if (is_pane)
+        facet.f = through_pane(s, facet.normal, facet.f);
     return facet;
 }
 
@@ -269,13 +290,19 @@ Scattering scattering_of_facets(Surface s, vec3 towards)
     none.bsdf = 0.0f;
     none.density = 0.0f;
     float alpha = s.material.alpha;
-    bool is_refracting = is_glass(s.material);
+    bool is_pane = is_thin(s.material);
+    bool is_body = is_glass(s.material) && !is_pane;
     float side = dot3(towards, s.shading);
     bool reflected = s.way == BY_REFLECTION;
     float cosine = reflected ? side : -side;
     float seen_cosine = -dot3(s.d, s.shading);
-    if (!(cosine > 0.0f) || !(seen_cosine > 0.0f) || (!reflected && !is_refracting))
+    if (!(cosine > 0.0f) || !(seen_cosine > 0.0f) || (!reflected && !is_glass(s.material)))
         return none;
+    bool passes_pane = is_pane && !reflected;
+    if (passes_pane) { // see through_pane()
+        towards = reflect_direction(towards, s.shading);
+        reflected = true;
+    }
     float eta = s.outside ? 1.0f / s.material.index_of_refraction : s.material.index_of_refraction;
     precise vec3 between = towards - s.d * (reflected ? 1.0f : eta);
     vec3 facet = normalized3(between);
@@ -286,7 +313,11 @@ Scattering scattering_of_facets(Surface s, vec3 towards)
         return none;
     float share = 1.0f;
     if (s.material.kind != MIRROR_SURFACE) // a coat is met from outside on both sides of the surface
-        share = fresnel(s.d, s.outside || !is_refracting ? facet : -facet, s.material.index_of_refraction).reflected;
+        share = fresnel(s.d, s.outside || !is_body ? facet : -facet, s.material.index_of_refraction).reflected;
+    if (is_pane) {
+        precise float both = 2.0f * share / (1.0f + share);
+        share = passes_pane ? 1.0f - both : both;
+    }
     // Half vectors per solid angle of `towards`, times the cosine by which a facet is seen.
     precise float sum = eta * seen + lit;
     precise float jacobian = reflected ? 0.25f : seen * abs(lit) / (sum * sum);

@@ -47,6 +47,7 @@ const uint MIRROR_SURFACE = 1u; // of all kinds that only reflect
 const uint GLASS_SURFACE = 2u;
 const uint COATED_SURFACE = 3u;
 const uint MIXED_SURFACE = 4u; // of two other materials (trace/mixture.glsl)
+const uint THIN_SURFACE = 5u;  // a pane of glass
 
 // Ways by which light leaves surfaces (trace/scatter.glsl).
 const uint BY_BASE = 0u; // scattered by a matte surface, bare or below a coat

@@ -64,6 +64,7 @@ static_assert(static_cast<uint>(surface_kind::diffuse) == kernels::LAMBERTIAN_SU
     && static_cast<uint>(surface_kind::refracting) == kernels::GLASS_SURFACE
     && static_cast<uint>(surface_kind::coated) == kernels::COATED_SURFACE
     && static_cast<uint>(surface_kind::mixed) == kernels::MIXED_SURFACE
+    && static_cast<uint>(surface_kind::thin) == kernels::THIN_SURFACE
     && detail::entry_of(material_kind::plastic).switches == (has_coats | has_mirrors)); // coats reflect, too
 
 /// What the large parts of a layout are made from. A scene that was edited often has the same.
@@ -196,7 +197,8 @@ namespace detail {
             uint features = entry_of(m.kind).switches | (is_clear(m) ? has_clear : 0u);
             for (const auto* part : parts_of(s_.materials, m)) {
                 const bool rough = is_rough(*part), specular = !is_diffuse(*part) || is_coated(*part);
-                features |= entry_of(part->kind).switches | (rough ? has_rough : 0u);
+                features |= entry_of(part->kind).switches | (rough ? has_rough : 0u)
+                    | (is_smooth_pane(*part) ? has_clear : 0u);
                 is_smooth_ = is_smooth_ || (specular && (!rough || part->roughness_texture.map));
             }
             return features;

@@ -174,14 +174,15 @@ void material_writer::add(const material& owner)
         made["alphaMode"] = "BLEND";
     if (kind == surface_kind::diffuse)
         extend(made, "KHR_materials_specular", {{"specularFactor", 0}}); // glTF's surfaces shine unless told otherwise
-    if (kind == surface_kind::refracting || (kind == surface_kind::coated && m->index_of_refraction != 1.5))
+    const bool is_glass = kind == surface_kind::refracting || kind == surface_kind::thin;
+    if (is_glass || (kind == surface_kind::coated && m->index_of_refraction != 1.5))
         extend(made, "KHR_materials_ior", {{"ior", m->index_of_refraction}});
-    if (kind == surface_kind::refracting) {
+    if (is_glass)
         extend(made, "KHR_materials_transmission", {{"transmissionFactor", 1}});
+    if (kind == surface_kind::refracting)
         extend(made, "KHR_materials_volume", {{"thicknessFactor", 1}}); // a body; without it, it would be a film
-    } else {
+    else
         made["doubleSided"] = true;
-    }
     materials_.push_back(std::move(made));
 }
 

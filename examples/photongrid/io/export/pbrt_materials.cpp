@@ -154,6 +154,13 @@ void material_writer::write(text_writer& to)
                 to.parameter("float eta", m.index_of_refraction);
                 write_roughness(to, m, rough);
                 break;
+            case material_kind::thin_glass:
+                to.quoted("thindielectric").parameter("float eta", m.index_of_refraction);
+                if (is_rough(m) || m.reflectance != dvec3(1) || m.texture.map)
+                    note(m,
+                        "pbrt's thin glass is smooth and lets all light pass; its roughness and its transmittance "
+                        "are left out");
+                break;
             case material_kind::mixture: break;
             default:
                 write_reflectance(to.quoted("diffuse"), m, color);

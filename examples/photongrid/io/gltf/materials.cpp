@@ -238,24 +238,17 @@ namespace {
         {
             const auto volume = m_.extension("KHR_materials_volume");
             const double thickness = volume ? volume->number("thicknessFactor", 0, 0) : 0;
-            if (!(thickness > 0)) {
-                const double once = reflectance_of(index_);
-                note(
-                    "a thin pane: drawn as a mirror that reflects as much from all sides as the pane does head-on, and "
-                    "lets the rest pass");
-                return add(suffix,
-                    {.name = "",
-                        .kind = material_kind::mirror,
-                        .reflectance = dvec3(1),
-                        .opacity = 2 * once / (1 + once)});
-            }
             material m{.name = "",
-                .kind = material_kind::glass,
+                .kind = thickness > 0 ? material_kind::glass : material_kind::thin_glass,
                 .reflectance = base_,
                 .index_of_refraction = body_index_,
                 .roughness = roughness_,
                 .texture = texture_,
                 .roughness_texture = roughness_texture_};
+            if (!(thickness > 0)) {
+                m.index_of_refraction = index_;
+                return add(suffix, std::move(m));
+            }
             const auto colour = volume->colour("attenuationColor", 1).value_or(dvec3(1));
             if (volume->has("attenuationDistance") && colour != dvec3(1)) {
                 note("glass that absorbs along the way: each crossing of its surface takes as much as half of its "

@@ -162,7 +162,10 @@ void scene_builder::add_mesh(const source_place& place, std::shared_ptr<const me
 
 double scene_builder::round_scale(const placing& at, std::uint32_t material) const
 {
-    return is_clear(made_.materials[material]) || has_texture(material) ? 0 : detail::even_scale(at.linear);
+    const bool only_meshes = is_clear(made_.materials[material]) || has_texture(material)
+        || detail::any_part(
+            made_.materials, made_.materials[material], [](const auto& m) { return is_smooth_pane(m); });
+    return only_meshes ? 0 : detail::even_scale(at.linear);
 }
 
 bool scene_builder::add_sphere(

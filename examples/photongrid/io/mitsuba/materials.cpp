@@ -221,16 +221,10 @@ std::optional<std::uint32_t> material_reader::made(const object& o)
         if (o.type == "roughdielectric")
             m.roughness = roughness(o, &m.roughness_texture);
     } else if (o.type == "thindielectric") {
-        const double index = relative_index(o, "bk7"), once = conductor_reflectance(index, 0);
-        m.kind = material_kind::mirror;
-        m.reflectance = dvec3(1);
-        m.opacity = 2 * once / (1 + once); // both faces, with all reflections between them
+        m.kind = material_kind::thin_glass;
+        m.index_of_refraction = relative_index(o, "bk7");
+        reflect(m, values_.reflectance(o, "specular_transmittance", dvec3(1)));
         note_unless_one(o, "specular_reflectance");
-        note_unless_one(o, "specular_transmittance");
-        builder_.note(o.place,
-            o.said()
-                + ": drawn as a mirror that reflects as much from all sides as the pane does head-on, and lets "
-                  "the rest pass");
     } else if (o.type == "conductor" || o.type == "roughconductor") {
         m.kind = material_kind::metal;
         reflect(m, values_.conductor(o));

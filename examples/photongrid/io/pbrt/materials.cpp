@@ -136,12 +136,9 @@ std::optional<std::uint32_t> material_reader::made(const entity& e, const std::s
         m.index_of_refraction = values_.index_of_refraction(e, "eta", 1.5);
         m.roughness = roughness(e, "", &m.roughness_texture);
     } else if (e.type == "thindielectric") {
-        const double eta = values_.index_of_refraction(e, "eta", 1.5), once = conductor_reflectance(eta, 0);
-        m.kind = material_kind::mirror;
+        m.kind = material_kind::thin_glass;
         m.reflectance = dvec3(1);
-        m.opacity = 2 * once / (1 + once); // both faces, with all reflections between them
-        said("drawn as a mirror that reflects as much from all sides as the pane does head-on, and lets the rest "
-             "pass");
+        m.index_of_refraction = values_.index_of_refraction(e, "eta", 1.5);
     } else if (e.type == "diffusetransmission") {
         said("drawn without the light that passes it");
         reflect(values_.reflectance(e, "reflectance", dvec3(0.25)));
