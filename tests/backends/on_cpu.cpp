@@ -15,6 +15,7 @@
 #include "../trace/box_tests.hpp"
 #include "../trace/instance_tests.hpp"
 #include "../trace/light_kind_tests.hpp"
+#include "../trace/media_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
 #include "../trace/mixture_tests.hpp"
@@ -32,6 +33,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(cpu, mesh_scenes, ::testing::Types<cpu_tag>, tag_
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, light_kinds, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, textures, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, mixtures, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, media, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases_of_pictures, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, progressive, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases, ::testing::Types<cpu_tag>, tag_names);

@@ -15,6 +15,7 @@
 #include "../trace/box_tests.hpp"
 #include "../trace/instance_tests.hpp"
 #include "../trace/light_kind_tests.hpp"
+#include "../trace/media_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
 #include "../trace/mixture_tests.hpp"
@@ -33,6 +34,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, mesh_scenes, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, light_kinds, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, textures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, mixtures, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, media, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_pictures, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, progressive, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases, contexts, tag_names);

@@ -10,6 +10,7 @@
 #include "../trace/box_tests.hpp"
 #include "../trace/double_oracle_tests.hpp"
 #include "../trace/light_kind_tests.hpp"
+#include "../trace/media_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
 #include "../trace/mixture_tests.hpp"
 #include "../trace/ray_tests.hpp"
@@ -25,6 +26,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(serial, mesh_scenes, ::testing::Types<serial_tag>
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, light_kinds, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, textures, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, mixtures, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, media, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases_of_pictures, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, progressive, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases, ::testing::Types<serial_tag>, tag_names);

@@ -15,6 +15,7 @@
 #include "../trace/box_tests.hpp"
 #include "../trace/instance_tests.hpp"
 #include "../trace/light_kind_tests.hpp"
+#include "../trace/media_tests.hpp"
 #include "../trace/mesh_ray_tests.hpp"
 #include "../trace/mesh_scene_tests.hpp"
 #include "../trace/mixture_tests.hpp"
@@ -33,6 +34,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, mesh_scenes, ::testing::Types<vulkan_tag>
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, light_kinds, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, textures, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, mixtures, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, media, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_pictures, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, progressive, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases, ::testing::Types<vulkan_tag>, tag_names);

@@ -9,27 +9,32 @@ TYPED_TEST_P(edges, angles_and_logarithms_are_those_of_the_library)
 {
     auto& b = this->b();
     random_source u(1);
-    std::vector<glm::vec4> numbers{{0, 1, 1, 0}, {1, 0, std::nextafter(1.0f, 2.0f), 0}, {0, -1, 1.41421356f, 0},
-        {1, 1, 1.41421366f, 0}, {1, -1, 2, 0}, {1e-30f, 1, 1e30f, 0}, {1e-30f, -1, 3e38f, 0}, {1e30f, 1e-5f, 4, 0}};
+    const float infinity = std::numeric_limits<float>::infinity();
+    std::vector<glm::vec4> numbers{{0, 1, 1, infinity}, {0, 1, 1, 3e38f}, {0, 1, 1, 87.0f}, {0, 1, 1, 0},
+        {1, 0, std::nextafter(1.0f, 2.0f), 0}, {0, -1, 1.41421356f, 0}, {1, 1, 1.41421366f, 0}, {1, -1, 2, 0},
+        {1e-30f, 1, 1e30f, 0}, {1e-30f, -1, 3e38f, 0}, {1e30f, 1e-5f, 4, 0}};
     for (int i = 0; i < 100000; ++i) {
         const float scale = std::exp2(40 * u() - 20);
         numbers.emplace_back(u() * scale, (2 * u() - 1) * scale * (i % 3 == 0 ? 1e-3f : 1.0f),
-            i % 2 == 0 ? std::exp2(100 * u() * u() * u()) : 1 + u(), 0.0f);
+            i % 2 == 0 ? std::exp2(100 * u() * u() * u()) : 1 + u(), i % 2 == 0 ? 90 * u() : std::exp2(-40 * u()));
     }
-    auto out = b.template make<glm::vec2>(numbers.size());
+    auto out = b.template make<glm::vec4>(numbers.size());
     b.template run<probes::angle_probe>(
         numbers.size(), {}, reads(b.upload(std::span<const glm::vec4>(numbers))), writes(out));
     const auto values = b.download(out);
-    double angle = 0, logarithm = 0;
+    double angle = 0, logarithm = 0, power = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         const glm::dvec4 n(numbers[i]);
         angle = std::max(angle, std::abs(static_cast<double>(values[i].x) - std::atan2(n.x, n.y)));
         logarithm = std::max(
             logarithm, std::abs(static_cast<double>(values[i].y) - std::log(n.z)) / std::max(1.0, std::log(n.z)));
+        const double known = n.w < 87 ? std::exp(-n.w) : 0;
+        power = std::max(power, std::abs(static_cast<double>(values[i].z) - known) / std::max(known, 1e-300));
     }
     std::printf("edges: largest error of an angle %.2g, of a logarithm %.2g (over 1 or itself)\n", angle, logarithm);
     EXPECT_LE(angle, 3e-7);
     EXPECT_LE(logarithm, 2e-7);
+    EXPECT_LE(power, 3e-7);
 }
 
 /// Convex polygons, in a plane of their own, of the `number`-th surface.

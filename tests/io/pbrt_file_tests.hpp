@@ -350,7 +350,7 @@ namespace {
                 "s.pbrt:3:1: error: matrix: makes the mesh flat; scale it by more than 0 along each axis"},
             {"WorldBegin\nMaterial \"dielectric\"\n" + ball + "Translate 1 0 0\n" + ball
                     + "Material \"diffuse\"\nTranslate 9 0 0\n" + ball,
-                "s.pbrt:5:1: error: this glass overlaps other glass; the outside of glass must be air"},
+                "s.pbrt:5:1: error: this body overlaps another one of the same glass"},
             {"WorldBegin\n", "s.pbrt: error: the scene has no shape that can be drawn"},
             {"Scale 0 1 1\nCamera \"perspective\"\n",
                 "s.pbrt:2:1: error: Camera: its transformation cannot be inverted"},

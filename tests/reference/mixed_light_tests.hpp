@@ -1,6 +1,7 @@
 // Scenes with all kinds of lights and with textures, by photons and by eye paths.
 #pragma once
 
+#include "../trace/media_scenes.hpp"
 #include "../trace/mixture_scenes.hpp"
 #include "../trace/texture_scenes.hpp"
 #include "eye_path_sums.hpp"
@@ -73,6 +74,18 @@ namespace {
             square_and_ball_under_all_lights({"frosted pane", material_kind::thin_glass, {0.9, 0.8, 0.7}, 1.5, 0.45},
                 {"frosted", material_kind::thin_glass, dvec3(0.95), 1.5, 0.8}))
             expect_photons_equal_eye_paths(s);
+    }
+
+    // Water and ice in glass: by the sums of media that photons, eye rays and the reference keep.
+    TEST(validation, glass_in_glass_equals_eye_paths)
+    {
+        auto s = iced_water();
+        s.render.view.light_samples = 16;
+        s.render.view.spp = 64;
+        expect_photons_equal_eye_paths(s);
+        s.name = "iced water, frosted";
+        s.materials[3].roughness = 0.5;
+        expect_photons_equal_eye_paths(s);
     }
 
     // Photons straight from the lamp, and those that other surfaces have sent, through panes alone and in mixtures.

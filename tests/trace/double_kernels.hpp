@@ -23,6 +23,7 @@ inline uint floatBitsToUint(double x) { return glm::floatBitsToUint(static_cast<
 inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintBitsToFloat(bits)); }
 
 #include <photongrid/core/begin.hpp>
+#include <photongrid/core/natural_exp.kernel.hpp>
 #include <photongrid/core/natural_log.kernel.hpp>
 #include <photongrid/map/grid.kernel.hpp>
 #include <photongrid/trace/emission_guide.kernel.hpp>
@@ -34,6 +35,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 
 // What kernels share, too.
 #undef PHOTONGRID_INSIDE_KERNEL_STRUCT
+#include <photongrid/core/natural_exp.glsl>
 #include <photongrid/core/natural_log.glsl>
 #include <photongrid/core/random.glsl>
 #include <photongrid/core/vector.glsl>

@@ -87,7 +87,7 @@ namespace {
                 const auto [first, second] = std::minmax({number((*pair)[0]), number((*pair)[1])});
                 fail(shapes.items[static_cast<std::size_t>(second)].place,
                     "is glass and overlaps shapes[" + std::to_string(first)
-                        + "], which is glass too; the outside of glass must be air, so move them apart");
+                        + "], which is of the same glass; move them apart, or give them different materials");
             }
         }
 

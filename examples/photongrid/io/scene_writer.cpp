@@ -172,7 +172,9 @@ namespace {
         for (const auto& f : row.fields)
             std::visit(
                 [&](auto member) {
-                    if (f.key != std::string_view("opacity") || m.opacity != 1)
+                    const std::string_view key = f.key;
+                    const bool is_rare = key == "opacity" || key == "absorption" || key == "priority";
+                    if (!is_rare || m.*member != std::decay_t<decltype(m.*member)>(*f.if_absent))
                         all[f.key] = written(m.*member);
                 },
                 f.member);

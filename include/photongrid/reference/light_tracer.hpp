@@ -139,19 +139,25 @@ private:
         const auto emitted = shapes.emit(light, random);
         dvec3 power = emitted.power / light.probability;
         ray r = emitted.from;
+        auto media = all.media_at(r.origin);
         std::uint64_t added = 0;
         bool from_light = true; // straight, or through clear surfaces
         for (std::uint32_t surface = 1; surface <= settings.photon_depth; ++surface) {
             const hit h = shapes.nearest(r);
             if (h.shape == nothing || h.light != nothing)
                 return added;
+            power *= media.left_after(h.t);
             // What is clear in part receives all light: the eye sees that share of it which is its opacity.
             const bool passes = all.passes(h, random);
             if (passes && from_light) {
                 r = {h.position, r.direction, h.shape};
                 continue;
             }
-            const auto met = all.met(h, random);
+            auto met = all.met(h, random);
+            if (!media.meets(met, !(glm::dot(h.normal, r.direction) > 0))) {
+                r = {h.position, r.direction, h.shape};
+                continue;
+            }
             const auto& m = met.of();
             const auto bounce = is_coated(m) ? off_coat(m, h, r.direction, random, true)
                 : is_diffuse(m)              ? specular_bounce{.weight = 0}
@@ -169,6 +175,8 @@ private:
                 return added;
             from_light = from_light && goes_straight_on(m, bounce);
             power *= (is_coated(m) ? dvec3(1) : tint(met, bounce)) * (bounce.adjoint * bounce.weight);
+            if (bounce.refracted)
+                media.pass(met);
             r = {h.position, bounce.direction, h.shape};
         }
         return added;

@@ -27,10 +27,12 @@ public:
         bool through_specular = false;     // whether a specular surface followed the last diffuse one
         double density = 0;                // of the ray's direction at the last diffuse surface
         double come = 0;                   // from the last surface on, through clear ones, m
+        auto media = surfaces_.media_at(r.origin);
         const auto is_too_deep
             = [&] { return surfaces == 0 ? ++specular_before > settings_.depth : ++surfaces > settings_.photon_depth; };
         for (;;) {
             const hit h = shapes_.nearest(r);
+            throughput *= media.left_after(h.shape == nothing ? std::numeric_limits<double>::max() : h.t);
             if (h.shape == nothing || h.light != nothing) {
                 const auto light = light_at(h, r.direction, come + h.t);
                 if (!(light.density > 0))
@@ -50,14 +52,22 @@ public:
                 continue;
             }
             const double before = std::exchange(come, 0);
-            const auto met = surfaces_.met(h, random);
+            auto met = surfaces_.met(h, random);
+            if (!media.meets(met, !(glm::dot(h.normal, r.direction) > 0))) {
+                if (is_too_deep())
+                    return sum;
+                come = before + h.t;
+                r = {h.position, r.direction, h.shape};
+                continue;
+            }
             const auto& m = met.of();
             specular_bounce bounce;
             if (is_coated(m))
                 bounce = off_coat(m, h, r.direction, random, false);
             if (is_coated(m) && is_rough(m) && surfaces == 0 && specular_before < settings_.depth)
                 sum += throughput
-                    * (highlight(m, h, r.direction, random) + on_rough_.radiance(m, h, r.direction, random, group));
+                    * (highlight(m, h, r.direction, media, random)
+                        + on_rough_.radiance(m, h, r.direction, random, group));
             const bool by_coat = is_coated(m) && random() < bounce.weight;
             if (is_diffuse(m) && !by_coat) {
                 if (++surfaces > settings_.photon_depth)
@@ -65,7 +75,7 @@ public:
                 const facing_normals normals(h, r.direction);
                 throughput *= bases_[met.number()].reflectance(met.reflectance());
                 sum += throughput / M_PI
-                    * (caustics_.irradiance(h, r.direction, group) + direct(m, h, normals, random));
+                    * (caustics_.irradiance(h, r.direction, group) + direct(m, h, normals, media, random));
                 if (surfaces >= 3) { // Russian roulette
                     const double survival = std::min(1.0, std::max({throughput.x, throughput.y, throughput.z}));
                     if (!(random() < survival))
@@ -85,9 +95,11 @@ public:
                 if (!by_coat) {
                     if (is_rough(m) && surfaces == 0)
                         sum += throughput * met.reflectance()
-                            * (highlight(m, h, r.direction, random)
+                            * (highlight(m, h, r.direction, media, random)
                                 + on_rough_.radiance(m, h, r.direction, random, group));
                     bounce = specular(m, h, r.direction, random);
+                    if (bounce.refracted)
+                        media.pass(met);
                     throughput *= tint(met, bounce) * (bounce.radiance_scale * bounce.weight);
                 }
                 if (!by_coat && goes_straight_on(m, bounce)) {
@@ -126,7 +138,8 @@ private:
     }
 
     /// The radiance of lights that rays cannot find, as a rough surface reflects or refracts it against d.
-    dvec3 highlight(const material& m, const hit& h, const dvec3& d, random_stream& random) const
+    dvec3 highlight(
+        const material& m, const hit& h, const dvec3& d, const path_media& media, random_stream& random) const
     {
         const auto& light = chosen_of(shapes_.lights(), random);
         if (light.is_visible())
@@ -136,12 +149,14 @@ private:
             = rough_bsdf(m, h, d, seen.towards) * std::abs(glm::dot(seen.towards, facing_normals(h, d).shading));
         if (!(reflected > 0) || seen.arriving == dvec3(0))
             return dvec3(0);
-        const dvec3 passes = surfaces_.share_through({h.position, seen.towards, h.shape}, seen.distance, seen.shape);
+        const dvec3 passes = surfaces_.share_through({h.position, seen.towards, h.shape}, seen.distance, seen.shape)
+            * media.left_after(seen.distance);
         return seen.arriving * (passes * reflected / light.probability);
     }
 
     /// The irradiance of direct light, below a coat if there is one, by one shadow ray to a light chosen by power.
-    dvec3 direct(const material& m, const hit& h, const facing_normals& normals, random_stream& random) const
+    dvec3 direct(const material& m, const hit& h, const facing_normals& normals, const path_media& media,
+        random_stream& random) const
     {
         const auto& light = chosen_of(shapes_.lights(), random);
         const auto seen = shapes_.seen_from(light, h.position, random);
@@ -152,8 +167,9 @@ private:
             cosine *= passes_coat(m, h, -d, random);
         if (!(cosine > 0) || seen.arriving == dvec3(0))
             return dvec3(0);
-        const dvec3 passing
-            = seen.arriving * surfaces_.share_through({h.position, d, h.shape}, seen.distance, seen.shape);
+        const dvec3 passing = seen.arriving
+            * surfaces_.share_through({h.position, d, h.shape}, seen.distance, seen.shape)
+            * media.left_after(seen.distance);
         if (!(seen.density > 0))
             return passing * (cosine / light.probability);
         const double by_light = light.probability * seen.density;

@@ -26,12 +26,14 @@ namespace reference {
 /// \throws std::invalid_argument for a scene, camera or settings that check() rejects, render_cancelled.
 /// \snippet snippets.cpp render_reference
 inline reference_picture render_reference(
-    const scene& s, const camera& view, const reference_settings& settings, const render_observer& observer = {})
+    const scene& given, const camera& view, const reference_settings& settings, const render_observer& observer = {})
 {
     using clock = std::chrono::steady_clock;
     const auto seconds_since
         = [](clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); };
-    check(s);
+    check(given);
+    scene s = given;
+    part_walls(s, media_of(s));
     check(view);
     check(settings);
     reference_picture out;

@@ -115,11 +115,13 @@ private:
         const auto emitted = shapes.emit(light, random);
         dvec3 power = emitted.power / light.probability;
         ray r = emitted.from;
+        auto media = all.media_at(r.origin);
         bool from_light = true; // straight, or through clear surfaces
         for (std::uint32_t surface = 1; surface <= settings.photon_depth; ++surface) {
             const hit h = shapes.nearest(r);
             if (h.shape == nothing || h.light != nothing)
                 return;
+            power *= media.left_after(h.t);
             if (!from_light && is_rough_in_part((*materials_)[h.material]))
                 found.push_back({bins_.at(h, r.direction), glm::vec3(r.direction),
                     glm::vec3(power * facing_normals(h, r.direction).received(r.direction))});
@@ -127,7 +129,11 @@ private:
                 r = {h.position, r.direction, h.shape};
                 continue;
             }
-            const auto met = all.met(h, random);
+            auto met = all.met(h, random);
+            if (!media.meets(met, !(glm::dot(h.normal, r.direction) > 0))) {
+                r = {h.position, r.direction, h.shape};
+                continue;
+            }
             const auto& m = met.of();
             if (is_rough(m) || (is_diffuse(m) && !is_coated(m)))
                 return;
@@ -137,6 +143,8 @@ private:
                 return;
             from_light = from_light && goes_straight_on(m, bounce);
             power *= (is_coated(m) ? dvec3(1) : tint(met, bounce)) * (bounce.adjoint * bounce.weight);
+            if (bounce.refracted)
+                media.pass(met);
             r = {h.position, bounce.direction, h.shape};
         }
     }

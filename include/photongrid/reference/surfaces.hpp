@@ -5,6 +5,7 @@
 #include <photongrid/reference/bsdf.hpp>
 #include <photongrid/reference/random_stream.hpp>
 #include <photongrid/reference/texture.hpp>
+#include <photongrid/scene/media.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -27,6 +28,13 @@ public:
 
     /// Its index in scene::materials.
     std::uint32_t number() const { return number_; }
+    /// Sets its index of refraction relative to what lies outside.
+    void set_index(double index)
+    {
+        if (!own_)
+            own_ = *material_;
+        own_->index_of_refraction = index;
+    }
     /// With its roughness here, but its colour without textures.
     const material& of() const { return own_ ? *own_ : *material_; }
     /// With textures and the colours of vertices.
@@ -37,6 +45,69 @@ private:
     const material* material_;
     std::optional<material> own_;
     dvec3 reflectance_;
+};
+
+/// The media that a path is in, one after the other of rising priority.
+class path_media {
+public:
+    /// At the point where the path begins.
+    path_media(const media_places& places, const dvec3& at) : media_(&places.media())
+    {
+        if (!media_->empty())
+            for (std::uint32_t n = 0, inside = places.at(at); n < media_->size(); ++n)
+                if ((inside >> n & 1u) != 0)
+                    inside_.push_back(n);
+    }
+
+    /// The share of light that is left after t, m.
+    dvec3 left_after(double t) const
+    {
+        return inside_.empty() ? dvec3(1) : glm::exp(-t * (*media_)[inside_.back()].absorption);
+    }
+
+    /// The path meets glass. Whether there is a surface; if so, sets its index of refraction. Else the path goes
+    /// straight on, into other media.
+    bool meets(met_material& met, bool from_outside)
+    {
+        met_ = number_of(met);
+        if (met_ == media_->size() || !refracts(met.of()))
+            return true;
+        std::erase(inside_, met_);
+        const auto& here = (*media_)[met_];
+        const bool is_real = here.is_interface || inside_.empty() || inside_.back() < met_;
+        if (is_real && !here.is_interface && !inside_.empty())
+            met.set_index(here.index_of_refraction / (*media_)[inside_.back()].index_of_refraction);
+        from_outside_ = from_outside;
+        if (is_real != from_outside)
+            enter(); // on the ray's side of a surface; past what is none
+        return is_real;
+    }
+
+    /// The path is refracted by the surface that it has met.
+    void pass(const met_material& met)
+    {
+        if (met_ == media_->size() || !refracts(met.of()))
+            return;
+        if (from_outside_)
+            enter();
+        else
+            std::erase(inside_, met_);
+    }
+
+private:
+    std::size_t number_of(const met_material& met) const
+    {
+        std::size_t n = 0;
+        while (n < media_->size() && (*media_)[n].material != met.number())
+            ++n;
+        return n;
+    }
+    void enter() { inside_.insert(std::lower_bound(inside_.begin(), inside_.end(), met_), met_); }
+
+    const std::vector<medium>* media_;
+    std::vector<std::size_t> inside_;
+    std::size_t met_ = 0; ///< the medium whose surface the path has met
+    bool from_outside_ = false;
 };
 
 /// Whether light goes straight on through a pane.
@@ -57,11 +128,14 @@ class surfaces {
 public:
     /// The arguments must outlive it.
     surfaces(const scene& s, const geometry& shapes)
-        : materials_(s.materials), shapes_(shapes),
+        : materials_(s.materials), shapes_(shapes), media_(s, media_of(s)),
           any_clear_(std::any_of(s.materials.begin(), s.materials.end(),
               [](const material& m) { return is_clear(m) || is_smooth_pane(m); }))
     {
     }
+
+    /// The media at a point.
+    path_media media_at(const dvec3& p) const { return {media_, p}; }
 
     /// Whether light passes the surface by chance.
     bool passes(const hit& h, random_stream& random) const
@@ -132,6 +206,7 @@ private:
 
     const std::vector<material>& materials_;
     const geometry& shapes_;
+    media_places media_;
     bool any_clear_;
 };
 

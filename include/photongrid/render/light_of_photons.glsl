@@ -2,6 +2,7 @@
 // a point are a density of power, of which each one's BSDF sends its share to the eye.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
+#include <photongrid/core/natural_exp.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 

@@ -31,7 +31,9 @@ struct material {
     /// Rgb, 0 to 1; of glass, the transmittance per crossing, of thin glass that of what passes; of plastic, what is
     /// below the coat.
     dvec3 reflectance{0.5};
-    double index_of_refraction = 1.5; ///< of glass, thin or not, and of the coat of plastic, 1 to 10; outside is air, 1
+    /// Of glass, thin or not, and of the coat of plastic, 1 to 10; of glass from 0.1 on, as of bubbles in water. Air
+    /// has 1.
+    double index_of_refraction = 1.5;
     double roughness = 0;  ///< but of Lambertian surfaces and mirrors, 0 to 1: the square root of GGX's alpha; below
                            ///< 0.001 it is smooth
     texture_use texture{}; ///< factor on the reflectance; on meshes with texture coordinates, as all textures
@@ -41,6 +43,11 @@ struct material {
     std::array<std::uint32_t, 2> parts{0, 0}; ///< of a mixture: indices of other materials (scene/mixture.hpp)
     double share = 0.5;                       ///< of the second part, 0 to 1
     texture_use share_texture{};              ///< factor on it
+    /// Of glass: what its inside absorbs of light on its way, rgb, 1/m: e^-absorption is left after a metre.
+    dvec3 absorption{0};
+    /// Of glass, 0 to 1000: where bodies overlap, the one of the highest priority is there; of equal ones the smallest.
+    /// 0: the surface is an interface of its own: its index of refraction is relative to what lies outside.
+    double priority = 1;
 
     bool operator==(const material&) const = default;
 };
@@ -50,7 +57,7 @@ struct material {
 enum class surface_kind : std::uint32_t {
     diffuse = 0,    ///< stores photons, and ends eye rays
     reflecting = 1, ///< as a mirror
-    refracting = 2, ///< reflects or refracts; bodies must not overlap
+    refracting = 2, ///< reflects or refracts
     coated = 3,     ///< reflects, or is diffuse below its coat
     mixed = 4,      ///< that of one of its parts
     thin = 5,       ///< reflects, or lets light pass straight on; if it is rough, spread by facets
@@ -90,13 +97,17 @@ namespace detail {
     inline constexpr material_field roughness_of_coat
         = {"roughness", "roughness", "a roughness", &material::roughness, {0, 1, ""}, 0};
     inline constexpr material_field metal_fields[] = {reflectance("reflectance"), roughness, opacity};
-    constexpr material_field index_of_refraction(std::optional<double> if_absent = std::nullopt)
+    constexpr material_field index_of_refraction(std::optional<double> if_absent = std::nullopt, double least = 1)
     {
         return {"index_of_refraction", "index_of_refraction", "an index of refraction", &material::index_of_refraction,
-            {1, 10, ""}, if_absent};
+            {least, 10, ""}, if_absent};
     }
-    inline constexpr material_field glass_fields[]
-        = {index_of_refraction(), reflectance("transmittance", 1), roughness, opacity};
+    inline constexpr material_field absorption
+        = {"absorption", "absorption", "an absorption", &material::absorption, {0, 1e9, " 1/m"}, 0};
+    inline constexpr material_field priority
+        = {"priority", "priority", "a priority", &material::priority, {0, 1000, ""}, 1};
+    inline constexpr material_field glass_fields[] = {index_of_refraction(std::nullopt, 0.1),
+        reflectance("transmittance", 1), roughness, absorption, priority, opacity};
     inline constexpr material_field thin_glass_fields[]
         = {index_of_refraction(1.5), reflectance("transmittance", 1), roughness, opacity};
     inline constexpr material_field plastic_fields[]
@@ -208,7 +219,8 @@ inline bool has_texture(const material& m)
 }
 
 /// \throws std::invalid_argument for a member that the kind has and that is out of its range: a reflectance, a
-/// roughness, an opacity or a share outside 0 to 1, or an index of refraction outside 1 to 10; or a texture that
+/// roughness, an opacity or a share outside 0 to 1, or an index of refraction outside 1 to 10, of
+/// glass 0.1 to 10; or a texture that
 /// check() rejects or that the kind does not have.
 inline void check(const material& m)
 {

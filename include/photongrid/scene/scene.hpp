@@ -35,12 +35,12 @@ struct scene {
     std::string name;                              ///< any text; the program names pictures after it
     photongrid::camera camera;                     ///< the view that render() draws
     std::vector<material> materials;               ///< shapes refer to them by index; at least one is Lambertian
-    std::vector<sphere> spheres;                   ///< those of glass must not overlap
+    std::vector<sphere> spheres;                   ///< those of one glass must not overlap
     std::vector<cylinder> cylinders;               ///< open
     std::vector<cone> cones;                       ///< open
     std::vector<paraboloid> paraboloids;           ///< open
     std::vector<disk> disks;                       ///< two-sided if Lambertian
-    std::vector<box> boxes;                        ///< closed; those of glass must not overlap
+    std::vector<box> boxes;                        ///< closed; those of one glass must not overlap
     std::vector<polygon> polygons;                 ///< two-sided if Lambertian
     std::vector<placed_mesh> meshes;               ///< two-sided if Lambertian; closed if glass
     std::vector<point_light> point_lights;         ///< a scene has at least one light of any kind
@@ -244,13 +244,15 @@ namespace detail {
         return overlap;
     }
 
-    /// Two glass bodies that overlap, the earlier one first, if any do: the outside of glass is taken to be air. Sorted
-    /// along the longest axis of all, each body is compared with those whose bounds meet its own along that axis.
+    /// Two bodies of one glass that overlap, the earlier one first, if any do: a ray that leaves one is taken to be
+    /// outside of all bodies of that glass. Sorted along the longest axis of all, each body is compared with those
+    /// whose bounds meet its own along that axis.
     inline std::optional<std::array<shape_place, 2>> overlapping_glass(const scene& s)
     {
         struct body {
             shape_place place;
             std::size_t number;
+            std::uint32_t material;
             bounds box{};
         };
         std::vector<body> bodies;
@@ -259,7 +261,8 @@ namespace detail {
             if constexpr (requires { overlaps(list[0], list[0]); })
                 for (std::size_t i = 0; i < list.size(); ++i)
                     if (refracts(s.materials, s.materials[list[i].material])) {
-                        kind.add_bounds(bodies.emplace_back(body{{kind.list, i}, bodies.size()}).box, list[i]);
+                        kind.add_bounds(
+                            bodies.emplace_back(body{{kind.list, i}, bodies.size(), list[i].material}).box, list[i]);
                         kind.add_bounds(all, list[i]);
                     }
         });
@@ -269,7 +272,7 @@ namespace detail {
             [axis](const body& a, const body& b) { return a.box.low[axis] < b.box.low[axis]; });
         for (auto a = bodies.begin(); a != bodies.end(); ++a)
             for (auto b = a + 1; b != bodies.end() && b->box.low[axis] <= a->box.high[axis]; ++b)
-                if (shapes_overlap(s, a->place, b->place))
+                if (a->material == b->material && shapes_overlap(s, a->place, b->place))
                     return a->number < b->number ? std::array{a->place, b->place} : std::array{b->place, a->place};
         return std::nullopt;
     }
@@ -312,8 +315,8 @@ namespace detail {
 } // namespace detail
 
 /// Checks a whole scene. The reader of scene files checks each part and adds its line.
-/// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or for glass
-///         bodies that overlap (meshes are not compared). Only a photon map needs a Lambertian shape (upload_scene,
+/// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or for bodies of
+///         one glass that overlap (meshes are not compared). Only a photon map needs a Lambertian shape (upload_scene,
 ///         scene files).
 inline void check(const scene& s)
 {
@@ -326,7 +329,7 @@ inline void check(const scene& s)
     detail::require(s.environment_lights.size() <= 1, "environment_lights: the scene has several; keep one");
     if (const auto pair = detail::overlapping_glass(s))
         throw std::invalid_argument((*pair)[1].text() + ": overlaps " + (*pair)[0].text()
-            + ", and both are glass; the outside of glass must be air, so move them apart");
+            + ", and both are of one glass; move them apart, or give them different materials");
     check(s.camera);
     check(s.render);
     if (s.paper) {

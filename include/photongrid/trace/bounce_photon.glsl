@@ -3,6 +3,7 @@
 // only.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
+#include <photongrid/core/natural_exp.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 #include <photongrid/trace/photon_event.glsl>
 
@@ -28,9 +29,9 @@ INPUT(7, vec4, mesh_normals)
 INPUT(8, vec4, mesh_shadings)
 INPUT(9, vec4, mesh_colors) // see mesh_color.glsl
 OUTPUT(0, vec4, position)       // xyz, m; w: event
-// w of power, next_origin and next_direction: x, y and z of the normal.
+// w of power, next_origin and next_direction: x, y and z of the normal; with MEDIA the last is an inside_code.
 OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
-// xyz: direction of the incoming photon; w: material; with TEXTURES, COATS, MIXTURES or CLEAR a color_code
+// xyz: direction of the incoming photon; w: material; with codes_colors() a color_code
 OUTPUT(2, vec4, direction)
 OUTPUT(3, vec4, next_origin)
 OUTPUT(4, vec4, next_direction)
@@ -43,6 +44,7 @@ OUTPUT(4, vec4, next_direction)
 #include <photongrid/trace/scatter.glsl>
 #include <photongrid/trace/color_code.glsl>
 #include <photongrid/trace/met_surface.glsl>
+#include <photongrid/trace/media.glsl>
 
 // A photon on its way.
 struct Photon {
@@ -51,7 +53,14 @@ struct Photon {
     vec4 power;  // W, of this photon
     uint before; // what it hit before: see photon_event.glsl
     uint end;    // how it goes on if it leaves a surface
+    uint inside; // the media that it is in: see trace/media.glsl
 };
+
+// Whether the colour of the surface that a photon left is not always that of its material.
+bool codes_colors()
+{
+    return TEXTURES || COATS || MIXTURES || CLEAR || MEDIA;
+}
 
 // What a path has hit, with the surface of its last event.
 uint hit_before(vec4 last)
@@ -69,7 +78,7 @@ uint hit_before(vec4 last)
 vec4 arriving_power(uint before, vec4 last)
 {
     vec3 colour;
-    if (TEXTURES || COATS || MIXTURES || CLEAR)
+    if (codes_colors())
         colour = color_of_code(directions(before).w);
     else
         colour = material_of(uint(directions(before).w)).reflectance;
@@ -113,26 +122,27 @@ uint surface_for(Surface s, uint other, vec4 r)
     return is_stored ? BOTH_SURFACES : SPECULAR_SURFACE;
 }
 
-// Writes power and normal of the photon that the surface receives.
-void receive(vec3 received, vec3 normal)
+// Writes power and normal of the photon that the surface receives; `inside`: the media on its side.
+void receive(vec3 received, vec3 normal, uint inside)
 {
     power = vec4(received.x, received.y, received.z, normal.x);
     next_origin.w = normal.y;
-    next_direction.w = normal.z;
+    next_direction.w = inside_code(inside, normal.z);
 }
 
-void leave(Hit hit, vec3 d, vec3 normal)
+// The photon leaves into the media `inside`.
+void leave(Hit hit, vec3 d, vec3 normal, uint inside)
 {
     vec3 start = ray_start(hit.position, hit.normal, d);
     next_origin = vec4(start.x, start.y, start.z, normal.y);
-    next_direction = vec4(d.x, d.y, d.z, normal.z);
+    next_direction = vec4(d.x, d.y, d.z, inside_code(inside, normal.z));
 }
 
 void go_straight_on(Hit hit, vec3 d, Photon photon)
 {
     power = photon.power;
     direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
-    leave(hit, d, vec3(0.0f, 0.0f, 0.0f));
+    leave(hit, d, vec3(0.0f, 0.0f, 0.0f), photon.inside);
     position.w = event_code(NO_SURFACE, photon.end, photon.before);
 }
 
@@ -147,25 +157,25 @@ void pass_clear(Hit hit, Surface s, uint surface, Photon photon, float round_by)
     direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
     precise float leaving = 1.0f / received_by_base(s);
     position.w = event_of_both(photon.end, photon.before, leaving, round_by, true);
-    leave(hit, s.d, s.shading);
+    leave(hit, s.d, s.shading, photon.inside);
 }
 
 // The photon meets a surface, which may store it, and leaves it or is absorbed. `other`: see surface_for(); `round_by`:
-// a random number; `passes`: it goes straight on.
-void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool passes)
+// a random number; `passes`: it goes straight on; `behind`: the media on the other side.
+void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool passes, uint behind)
 {
     vec4 r = random4(uvec4(photon.id, photon.frame, 0u, args.seed));
     Facet facet = facet_met(s, r.y, r.z);
     s = leaving_by(s, way_of(s, r.w < reflected_share(s, facet)));
     float survival = largest3(s.material.reflectance);
     direction.w = float(s.number);
-    if (TEXTURES || COATS || MIXTURES || CLEAR)
+    if (codes_colors())
         direction.w = survival > 0.0f ? color_code(s.material.reflectance) : 0.0f;
     bool for_rough = ROUGH && args.ends == ROUGH_ENDS;
     uint surface = for_rough ? rough_surface_for(s, other, photon.before) : surface_for(s, other, r);
     float received = surface == SPECULAR_SURFACE ? 1.0f : received_by_base(s);
     precise vec3 at_base = vec3(photon.power) * received; // which sends it out about its geometric normal
-    receive(at_base, s.shading);
+    receive(at_base, s.shading, photon.inside);
     position.w = event_code(surface, ABSORBED, photon.before);
     if (CLEAR && passes) {
         pass_clear(hit, s, surface, photon, round_by);
@@ -191,9 +201,9 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool
         position.w = event_of_both(photon.end, photon.before, leaving, round_by, false);
     } else if (surface == SPECULAR_SURFACE) {
         precise vec3 scaled = at_base * l.power_scale;
-        receive(scaled, s.shading);
+        receive(scaled, s.shading, photon.inside);
     }
-    leave(hit, l.direction, s.shading);
+    leave(hit, l.direction, s.shading, s.way == BY_REFRACTION ? behind : photon.inside);
 }
 
 void kernel(uint i)
@@ -204,6 +214,7 @@ void kernel(uint i)
     uint before = i - args.paths;
     photon.id = args.first_path + number;
     photon.end = photon.frame < args.last_frame ? GOES_ON : CUT_OFF;
+    photon.inside = 0u;
     position = vec4(0.0f, 0.0f, 0.0f, event_code(NO_SURFACE, ENDED_BEFORE, NOTHING_BEFORE));
     power = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     direction = power;
@@ -214,6 +225,7 @@ void kernel(uint i)
         return;
     photon.before = hit_before(last);
     photon.power = photon.frame > 1u ? arriving_power(before, last) : powers(before);
+    photon.inside = inside_of(next_directions(before).w);
     power = photon.power;
     vec3 o = vec3(next_origins(before));
     vec3 d = vec3(next_directions(before));
@@ -235,6 +247,15 @@ void kernel(uint i)
     position.w = event_code(NO_SURFACE, ABSORBED, photon.before);
     if (hit.material == NO_MATERIAL)
         return; // the surfaces of lights are black
+    if (MEDIA && photon.inside != 0u) { // Russian roulette: photons change in colour only
+        vec3 left = left_after(photon.inside, hit.t);
+        float survival = largest3(left);
+        if (!(random4(uvec4(photon.id, photon.frame, 1001u, args.seed)).x < survival))
+            return;
+        precise vec3 tinted = vec3(photon.power) * (left / survival);
+        photon.power = vec4(tinted.x, tinted.y, tinted.z, 0.0f);
+        power = photon.power;
+    }
 
     vec4 chance = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     if (MIXTURES || CLEAR)
@@ -257,7 +278,18 @@ void kernel(uint i)
         other = part == 0u ? parts.second : parts.first;
     }
     Surface s = surface_met(hit, d, material_at(hit.material, part, on_mesh, number));
-    scatter(hit, s, other, photon, chance.z, passes);
+    uint behind = 0u;
+    if (MEDIA && s.material.kind == GLASS_SURFACE) {
+        Crossing c = crossing(photon.inside, s.number, s.outside, s.material.index_of_refraction);
+        photon.inside = c.is_real ? c.in_front : c.behind;
+        behind = c.behind;
+        s.material.index_of_refraction = c.index;
+        if (!c.is_real) {
+            go_straight_on(hit, d, photon);
+            return;
+        }
+    }
+    scatter(hit, s, other, photon, chance.z, passes, behind);
 }
 
 // Whether this path needs no further frames.

@@ -24,10 +24,11 @@ OUTPUT(0, vec4, position)       // xyz, m; w: event, see photon_event.glsl
 OUTPUT(1, vec4, power)          // rgb, W, not yet divided by the number of paths
 OUTPUT(2, vec4, direction)      // of the photon
 OUTPUT(3, vec4, next_origin)    // origin of the path's next ray ...
-OUTPUT(4, vec4, next_direction) // ... and its direction
+OUTPUT(4, vec4, next_direction) // ... and its direction; w: with MEDIA the inside_code of the light's place
 
 #include <photongrid/trace/emission_numbers.glsl>
 #include <photongrid/trace/lights.glsl>
+#include <photongrid/trace/inside_code.glsl>
 
 void kernel(uint i)
 {
@@ -51,5 +52,6 @@ void kernel(uint i)
     power = vec4(weighted.x, weighted.y, weighted.z, 0.0f);
     direction = vec4(e.direction.x, e.direction.y, e.direction.z, 0.0f);
     next_origin = start;
-    next_direction = vec4(e.direction.x, e.direction.y, e.direction.z, 0.0f);
+    next_direction = vec4(e.direction.x, e.direction.y, e.direction.z,
+        MEDIA ? inside_code(media_around(at), 1.0f) : 0.0f);
 }

@@ -6,6 +6,7 @@
 // each. Later a random number selects it, stratified over the eye rays of a pixel.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
+#include <photongrid/core/natural_exp.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
@@ -31,15 +32,16 @@ INPUT(2, vec4, mesh_normals)
 INPUT(3, vec4, mesh_shadings)
 INPUT(4, vec4, environment) // see environment.glsl
 INPUT(5, vec4, mesh_colors) // see mesh_color.glsl
-// xyz: origin, at the end the point hit, m; w: 0 in flight, 1 on a diffuse surface, -2 - alpha on a rough one
-// (rough_points.glsl), else -1
+// xyz: origin, at the end the point hit, m; w: 0 in flight, an end_code() on a diffuse surface, -2 - alpha on a rough
+// one (rough_points.glsl), else -1
 STATE(0, vec4, point)
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
 // rgb: factor between radiance here and at the eye; at the end on a diffuse surface between pi times its irradiance, or
 // below a coat the part of that which passed, and radiance at the eye. w: splits so far
 STATE(2, vec4, throughput)
 // xyz: normal towards the eye; w: material. In flight, x: the density of the direction in which the ray left a rough
-// surface, the last one that it met, sr^-1, else 0; y: how far it has come from there through clear ones, m
+// surface, the last one that it met, sr^-1, else 0; y: how far it has come from there through clear ones, m; w: the
+// media that it is in (media.glsl)
 STATE(3, vec4, surface)
 STATE(4, vec4, emitted)    // rgb: radiance of the light that the ray ended on, times throughput
 STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; branch 0 sets the other bits
@@ -53,6 +55,7 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/optics.glsl>
 #include <photongrid/trace/scatter.glsl>
 #include <photongrid/trace/met_surface.glsl>
+#include <photongrid/trace/media.glsl>
 
 bool done()
 {
@@ -228,7 +231,7 @@ void end_on_base(Hit hit, Surface s, vec3 reflected)
     vec3 p = hit.position;
     if (SMOOTH) // shadow rays start off the surface about its shading normal
         p = ray_start(p, s.geometric, s.geometric);
-    point = vec4(p.x, p.y, p.z, is_counted() ? 1.0f : -1.0f);
+    point = vec4(p.x, p.y, p.z, is_counted() ? end_code(uint(surface.w)) : -1.0f);
     throughput = vec4(reflected.x, reflected.y, reflected.z, throughput.w);
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
 }
@@ -241,7 +244,7 @@ void end_on_rough(Hit hit, Surface s, vec3 reflected)
     point = vec4(hit.position.x, hit.position.y, hit.position.z, is_counted() ? code : -1.0f);
     direction.w = hit.normal.x;
     throughput = vec4(reflected.x, reflected.y, reflected.z, hit.normal.y);
-    emitted.w = hit.normal.z;
+    emitted.w = inside_code(uint(surface.w), hit.normal.z);
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
 }
 
@@ -260,8 +263,9 @@ Branch rough_branch(uint i, uint hits)
     return b;
 }
 
-// The ray meets a surface, and ends on it or leaves it. `met`: the factor on throughput for what it meets of the hit.
-void scatter(uint i, Hit hit, Surface s, float met)
+// The ray meets a surface, and ends on it or leaves it. `met`: the factor on throughput for what it meets of the hit;
+// `behind`: the media on the other side.
+void scatter(uint i, Hit hit, Surface s, float met, uint behind)
 {
     uint hits = uint(direction.w);
     if (is_coated(s)) {
@@ -325,6 +329,15 @@ void scatter(uint i, Hit hit, Surface s, float met)
     point = vec4(start.x, start.y, start.z, 0.0f);
     direction = vec4(l.direction.x, l.direction.y, l.direction.z, float(hits + 1u));
     throughput = vec4(reflected.x * leaving, reflected.y * leaving, reflected.z * leaving, throughput.w);
+    if (MEDIA && s.way == BY_REFRACTION)
+        surface.w = float(behind);
+}
+
+// What the medium on the way has left.
+void attenuate(float t)
+{
+    precise vec3 left = vec3(throughput) * left_after(uint(surface.w), t);
+    throughput = vec4(left.x, left.y, left.z, throughput.w);
 }
 
 void kernel(uint i)
@@ -336,6 +349,8 @@ void kernel(uint i)
     if (on_mesh)
         hit = mesh_hit(number);
     uint hits = uint(direction.w);
+    if (MEDIA)
+        attenuate(hit.t < 0.0f ? 3.0e38f : hit.t);
     if (hit.t < 0.0f) {
         point.w = -1.0f;
         if (ENVIRONMENT_LIGHTS && is_counted())
@@ -366,5 +381,17 @@ void kernel(uint i)
         precise float both = met * b.share;
         met = both;
     }
-    scatter(i, hit, surface_met(hit, d, material_at(hit.material, part, on_mesh, number)), met);
+    Surface s = surface_met(hit, d, material_at(hit.material, part, on_mesh, number));
+    uint behind = 0u;
+    if (MEDIA && s.material.kind == GLASS_SURFACE) {
+        Crossing c = crossing(uint(surface.w), s.number, s.outside, s.material.index_of_refraction);
+        surface.w = float(c.is_real ? c.in_front : c.behind);
+        behind = c.behind;
+        s.material.index_of_refraction = c.index;
+        if (!c.is_real) {
+            pass_clear(hit, d, vec3(met, met, met));
+            return;
+        }
+    }
+    scatter(i, hit, s, met, behind);
 }

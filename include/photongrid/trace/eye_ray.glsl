@@ -6,7 +6,7 @@
 #include <photongrid/core/random.glsl>
 
 struct Params {
-    vec4 position;  // of the camera, m
+    vec4 position;  // of the camera, m; w: the media that it is in (trace/media.glsl)
     vec4 corner;    // direction to the picture's top left corner ...
     vec4 right;     // ... and the step from pixel to pixel along a row ...
     vec4 down;      // ... and along a column
@@ -71,5 +71,6 @@ void kernel(uint i)
     precise vec3 d = vec3(args.corner) + vec3(args.right) * (float(x) + dx) + vec3(args.down) * (float(y) + dy);
     vec3 n = normalized3(d);
     point = vec4(args.position.x, args.position.y, args.position.z, 0.0f);
+    surface = vec4(0.0f, 0.0f, 1.0f, args.position.w);
     direction = vec4(n.x, n.y, n.z, 0.0f);
 }

@@ -304,8 +304,9 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const eye_view& view, c
     const uint splits = splits_of(layout);
     const auto place = place_of(settings, ray, splits);
     const uint sampled_at_rough = samples_choose_lights(layout) ? 0 : settings.view.light_samples;
-    device.template run<kernels::eye_ray>(pixels,
-        eye_params(view.from, layout.center, settings, view.pixels, ray, splits), reads(),
+    auto from = eye_params(view.from, layout.center, settings, view.pixels, ray, splits);
+    from.position.w = static_cast<float>(layout.media.at(view.from.position));
+    device.template run<kernels::eye_ray>(pixels, from, reads(),
         writes(hits.points, hits.directions, hits.throughputs, hits.surfaces, hits.emissions, branches));
     trace_to_ends(device, s, pixels,
         {.branch = place.branch,
@@ -329,10 +330,10 @@ void direct_light(B& device, const device_scene<B>& s, const ray_of_pixels& of, 
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
     // Features that direct_light.glsl does not handle.
     constexpr uint others
-        = has_meshes | has_coats | (all_light_switches & ~(uint{has_point_lights} | uint{has_area_lights}));
+        = has_meshes | has_coats | has_media | (all_light_switches & ~(uint{has_point_lights} | uint{has_area_lights}));
     // A part of a lamp that is taken whole is seen whole or not at all: where something covers a part of it, the mean
     // of many passes is not exact.
-    const bool takes_whole = settings.estimate.indirect != indirect_kind::paths;
+    const bool takes_whole = settings.estimate.indirect != indirect_kind::paths && (s.layout.features & has_media) == 0;
     if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout) || !takes_whole) {
         const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel, takes_whole ? 1u : 0u};
         add_light_samples(device, s, of, lit, light, [](const auto&, auto&) {});

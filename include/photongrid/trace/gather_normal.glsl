@@ -1,4 +1,5 @@
 // The surface normal at stored photon i, on the side that it hit. bounce_photon.glsl stores it in three w components.
+#include <photongrid/core/vector.glsl>
 #include <photongrid/trace/photon_event.glsl>
 
 struct Params {
@@ -16,9 +17,12 @@ INPUT(4, vec4, next_directions)
 OUTPUT(0, vec4, normal)
 
 #include <photongrid/trace/stored_photon.glsl>
+#include <photongrid/trace/inside_code.glsl>
 
 void kernel(uint i)
 {
     uint at = stored_photon(i);
-    normal = vec4(powers(at).w, next_origins(at).w, next_directions(at).w, 0.0f);
+    float x = powers(at).w;
+    float y = next_origins(at).w;
+    normal = vec4(x, y, z_of(x, y, next_directions(at).w), 0.0f);
 }

@@ -1,7 +1,7 @@
 // The records of materials and of their textures, for kernels (trace/materials.glsl, mixture.glsl, mesh_color.glsl).
 #pragma once
 
-#include <photongrid/scene/material.hpp>
+#include <photongrid/scene/media.hpp>
 #include <photongrid/scene/record_writer.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
@@ -16,7 +16,8 @@
 namespace photongrid::detail {
 
 /// Appends the records of materials. Returns their textures, which the records number from 1 on.
-inline std::vector<const texture_use*> put_materials(record_writer& w, const std::vector<material>& materials)
+inline std::vector<const texture_use*> put_materials(
+    record_writer& w, const std::vector<material>& materials, const std::vector<medium>& media)
 {
     std::vector<const texture_use*> textures;
     const auto number_of = [&](const texture_use& t) {
@@ -24,13 +25,17 @@ inline std::vector<const texture_use*> put_materials(record_writer& w, const std
             textures.push_back(&t);
         return static_cast<double>(t.map ? textures.size() : 0);
     };
-    for (const auto& m : materials) {
+    std::vector<double> media_of_materials(materials.size(), 0); // see crossing() of trace/media.glsl
+    for (std::size_t n = 0; n < media.size(); ++n)
+        media_of_materials[media[n].material] = (media[n].is_interface ? -1.0 : 1.0) * static_cast<double>(n + 1);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const auto& m = materials[i];
         w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
         w.put(dvec3(m.index_of_refraction, number_of(m.texture), alpha_of(m)), 0); // w: see write_coats
         w.put(dvec3(m.opacity, m.share, m.parts[0]), m.parts[1]);
         const double of_opacity = number_of(m.opacity_texture), of_roughness = number_of(m.roughness_texture),
                      of_share = number_of(m.share_texture);
-        w.put(dvec3(of_opacity, of_roughness, of_share), 0);
+        w.put(dvec3(of_opacity, of_roughness, of_share), media_of_materials[i]);
     }
     return textures;
 }

@@ -1,5 +1,6 @@
 // Where an eye ray ended on a rough surface (eye_bounce.glsl). Included by kernels after their INPUTs scene, points,
-// directions, throughputs, surfaces and emissions, and after trace/scatter.glsl.
+// directions, throughputs, surfaces and emissions, and after core/natural_exp.glsl and trace/scatter.glsl.
+#include <photongrid/trace/media.glsl>
 
 bool ended_on_rough(uint ray)
 {
@@ -7,11 +8,17 @@ bool ended_on_rough(uint ray)
 }
 
 // The surface as the eye ray met it.
+Crossing crossing_at(uint ray, Surface s)
+{
+    return crossing(inside_of(emissions(ray).w), s.number, s.outside, material_of(s.number).index_of_refraction);
+}
+
 Surface rough_end(uint ray)
 {
     vec4 way = directions(ray);
     vec4 facing = surfaces(ray);
-    vec3 outward = vec3(way.w, throughputs(ray).w, emissions(ray).w);
+    float y = throughputs(ray).w;
+    vec3 outward = vec3(way.w, y, z_of(way.w, y, emissions(ray).w));
     Surface s;
     s.number = uint(facing.w);
     s.material = material_of(s.number);
@@ -22,5 +29,7 @@ Surface rough_end(uint ray)
     s.outside = !(dot3(outward, s.d) > 0.0f);
     s.geometric = s.outside ? outward : -outward;
     s.shading = vec3(facing);
+    if (MEDIA)
+        s.material.index_of_refraction = crossing_at(ray, s).index;
     return s;
 }

@@ -1,6 +1,7 @@
 // The ends of eye rays on rough surfaces as points that light falls on from one side, for shadow_ray.glsl.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
+#include <photongrid/core/natural_exp.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
@@ -16,7 +17,7 @@ INPUT(2, vec4, directions)
 INPUT(3, vec4, throughputs)
 INPUT(4, vec4, surfaces)
 INPUT(5, vec4, emissions)
-OUTPUT(0, vec4, point)   // xyz, m; w: 1 where light may fall, else -1
+OUTPUT(0, vec4, point)   // xyz, m; w: an end_code() where light may fall, else -1
 OUTPUT(1, vec4, surface) // xyz: normal on the lit side; w: -1, no material: the light is not yet that below a coat
 
 #include <photongrid/trace/materials.glsl>
@@ -38,6 +39,11 @@ void kernel(uint i)
     float side = args.behind != 0u ? -1.0f : 1.0f;
     // Shadow rays start off the surface about its shading normal, and from this point.
     vec3 p = ray_at(end, e.geometric, side * ray_offset(end, scene(SCENE_SIZES).x));
-    point = vec4(p.x, p.y, p.z, 1.0f);
+    uint inside = 0u;
+    if (MEDIA) {
+        Crossing c = crossing_at(ray, e);
+        inside = args.behind != 0u ? c.behind : c.in_front;
+    }
+    point = vec4(p.x, p.y, p.z, end_code(inside));
     surface = vec4(e.shading.x * side, e.shading.y * side, e.shading.z * side, -1.0f);
 }

@@ -3,6 +3,7 @@
 // heuristic (Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, section 9.2).
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
+#include <photongrid/core/natural_exp.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {

@@ -3,7 +3,8 @@
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint SCENE_TABLES = 32u;
-const uint MATERIAL_TABLE = 4u; // no kind of shape has the numbers 4 to 7 or 9 to 22, other SWITCHes (scene_feature)
+// No kind of shape has the numbers 4 to 7, 9 to 22 or 25, other SWITCHes (scene_feature).
+const uint MATERIAL_TABLE = 4u;
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;    // see trace/light_record.glsl
 const uint TEXTURE_TABLE = 7u; // of the materials that have one; see trace/mesh_color.glsl
@@ -21,6 +22,7 @@ const uint SAMPLED_ONCE = 0u;
 const uint SAMPLED_BY_AREA = 1u;
 const uint SAMPLED_BY_SOLID_ANGLE = 2u;
 const uint SAMPLED_BY_DIRECTION = 3u;
+const uint MEDIA_TABLE = 25u; // see trace/media.glsl
 const uint FIRST_MATERIAL = SCENE_TABLES; // materials come first, so that kernels need not look their table up
 const uint MATERIAL_RECORDS = 4u; // trace/material_layout.hpp
 const uint TEXTURE_RECORDS = 3u;

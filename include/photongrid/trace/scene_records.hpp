@@ -39,12 +39,13 @@ enum scene_feature : uint {
     has_instances = 1u << 20,     ///< surfaces of triangles that stand in several places
     has_mixtures = detail::entry_of(material_kind::mixture).switches,
     has_clear = 1u << 22, ///< surfaces through which some light goes straight on
+    has_media = 1u << 25, ///< glass that touches other glass, or absorbs (scene/media.hpp)
 };
 
 static_assert(
     [] {
         std::uint32_t taken = has_mirrors | has_glass | has_meshes | has_smooth_meshes | has_textures | has_rough
-            | has_shape_tree | has_coats | has_instances | has_mixtures | has_clear;
+            | has_shape_tree | has_coats | has_instances | has_mixtures | has_clear | has_media;
         bool distinct = true;
         std::uint32_t before = kernels::SCENE_TABLES; // kinds of shapes with the same kernel code follow each other
         const auto take = [&](std::uint32_t number) {
@@ -96,6 +97,7 @@ struct scene_layout {
     bool is_matte = false;           ///< there is a Lambertian surface, which stores photons
     glm::vec3 low{0};                ///< m; box of the Lambertian surfaces, recentred; of all, if there is none
     glm::vec3 high{0};               ///< m; its other corner
+    media_places media;              ///< not recentred
     mesh_layout meshes;
     environment_layout environment;
     layout_sources sources;
@@ -168,8 +170,12 @@ namespace detail {
     /// Lays a scene out. Each member function writes one part.
     class layout_writer {
     public:
-        /// `s` must be relative to its anchor. `before`: sources of parts that need not be written; may be null.
-        layout_writer(const scene& s, const layout_sources* before) : s_(s), before_(before), shared_(s) {}
+        /// `s` and `media` must be relative to its anchor. `before`: sources of parts that need not be written; may be
+        /// null.
+        layout_writer(const scene& s, const media_places& media, const layout_sources* before)
+            : s_(s), media_(media), before_(before), shared_(s)
+        {
+        }
 
         scene_layout write()
         {
@@ -241,6 +247,7 @@ namespace detail {
                 out_.features |= shared_.holds(m) ? has_instances : 0u;
                 out_.features |= m.surface->colors.empty() && !has_texture(s_.materials, of) ? 0u : has_textures;
             }
+            out_.features |= media_.media().empty() ? 0u : has_media;
             require(!all.empty(), no_shape);
             out_.is_matte = !diffuse.empty();
             if (!out_.is_matte)
@@ -373,13 +380,16 @@ namespace detail {
         void write_materials(record_writer& w)
         {
             enter(kernels::MATERIAL_TABLE, w.next(), s_.materials.size(), kernels::MATERIAL_RECORDS);
-            const auto textures = put_materials(w, s_.materials);
+            const auto textures = put_materials(w, s_.materials, media_.media());
             enter(kernels::TEXTURE_TABLE, w.next(), textures.size(), kernels::TEXTURE_RECORDS);
             out_.sources.textures = put_textures(w, textures);
             out_.shares_texels = before_ != nullptr && before_->textures == out_.sources.textures;
             if (!out_.shares_texels)
                 out_.meshes.texels = texels_of(out_.sources.textures);
             write_coats(w, out_.records, s_.materials);
+            enter(kernels::MEDIA_TABLE, w.next(), media_.media().size(), 1);
+            for (const auto& m : media_.media())
+                w.put(m.absorption, m.index_of_refraction);
         }
 
         /// Lights are chosen with probabilities proportional to their power.
@@ -405,7 +415,9 @@ namespace detail {
                     below += weight;
                     w.put(dvec3(kind.number, weight / total, below / total), static_cast<int>(kind.samples));
                     kind.write_record(w, l, in);
-                    w.put(power, 0);
+                    bounds place;
+                    kind.add_bounds(place, l);
+                    w.put(power, place.empty() ? 0.0 : media_.at(0.5 * (place.low + place.high)));
                     if constexpr (requires { l.surface; })
                         in.first_triangle += l.surface.surface->triangles.size();
                 }
@@ -443,6 +455,7 @@ namespace detail {
         }
 
         const scene& s_;
+        const media_places& media_;
         const layout_sources* before_;
         shared_surfaces shared_;
         scene_layout out_;
@@ -463,9 +476,12 @@ inline scene_layout lay_out(const scene& original, const layout_sources* before 
     // All coordinates are relative to a point of the scene, so that a scene that is moved by an exactly representable
     // vector has the same records, bit for bit.
     const dvec3 anchor = detail::anchor(original);
-    const scene s = detail::moved_back(original, anchor);
-    auto layout = detail::layout_writer(s, before).write();
+    scene s = detail::moved_back(original, anchor);
+    const media_places media(s, media_of(s));
+    part_walls(s, media.media());
+    auto layout = detail::layout_writer(s, media, before).write();
     layout.center += anchor;
+    layout.media = {original, media.media()};
     return layout;
 }
 

@@ -143,7 +143,7 @@ void photon_tracing<B>::advance()
         reads(sums, frames_->positions, frames_->powers, frames_->directions),
         writes(t_.photons.positions, t_.photons.powers, t_.photons.directions));
     if (keeps_normals(settings_))
-        device_.template run<kernels::gather_normal>({taken, stored_},
+        device_.template run<kernels::gather_normal>({taken, stored_, scene_.layout.features},
             {.paths = paths, .frames = frames, .stored_before = stored_, .kinds = request_.kinds},
             reads(sums, frames_->positions, frames_->powers, frames_->next_origins, frames_->next_directions),
             writes(t_.photons.normals));

@@ -251,11 +251,9 @@ namespace {
             }
             const auto colour = volume->colour("attenuationColor", 1).value_or(dvec3(1));
             if (volume->has("attenuationDistance") && colour != dvec3(1)) {
-                note("glass that absorbs along the way: each crossing of its surface takes as much as half of its "
-                     "thickness");
                 const double distance = volume->number("attenuationDistance", 1, 1e-9);
                 for (int c = 0; c < 3; ++c)
-                    m.reflectance[c] *= std::pow(colour[c], thickness / 2 / distance);
+                    m.absorption[c] = -std::log(std::max(colour[c], 1e-9)) / distance;
             }
             return add(suffix, std::move(m));
         }

@@ -250,7 +250,7 @@ imported_scene scene_builder::finish()
     if (const auto pair = detail::overlapping_glass(made_)) {
         const auto& second = (*pair)[1];
         fail_at(second.list == shape_kind<sphere>::list ? sphere_places_[second.index] : file_,
-            "this glass overlaps other glass; the outside of glass must be air");
+            "this body overlaps another one of the same glass");
     }
     if (settings_.camera_from.empty())
         detail::check_at(file_, made_.camera);

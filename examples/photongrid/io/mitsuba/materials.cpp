@@ -86,7 +86,7 @@ double material_reader::roughness(const object& o, texture_use* texture)
     return std::sqrt(rough(alpha_u) * rough(alpha_v));
 }
 
-double material_reader::relative_index(const object& o, const char* if_absent)
+double material_reader::relative_index(const object& o, const char* if_absent, double least)
 {
     const double inside = values_.index_of_refraction(o, "int_ior", if_absent),
                  outside = values_.index_of_refraction(o, "ext_ior", "air");
@@ -94,9 +94,10 @@ double material_reader::relative_index(const object& o, const char* if_absent)
         fail_at(o.place, o.said() + ": an index of refraction must be above 0");
     if (std::abs(outside - 1) > 0.001)
         builder_.note(o.place, o.said() + ": the outside has no air: the index is that of both sides' ratio");
-    if (inside < outside)
-        builder_.note(o.place, o.said() + ": its index of refraction is below 1; 1 is used");
-    return std::clamp(inside / outside, 1.0, 10.0);
+    if (inside < least * outside)
+        builder_.note(
+            o.place, o.said() + ": its index of refraction is too small; " + detail::text_of(least) + " is used");
+    return std::clamp(inside / outside, least, 10.0);
 }
 
 void material_reader::note_unless_one(const object& o, const char* name)
@@ -215,7 +216,8 @@ std::optional<std::uint32_t> material_reader::made(const object& o)
         reflect(m, values_.reflectance(o, old_name ? "diffuse_reflectance" : "reflectance", dvec3(0.5)));
     } else if (o.type == "dielectric" || o.type == "roughdielectric") {
         m.kind = material_kind::glass;
-        m.index_of_refraction = relative_index(o, "bk7");
+        m.priority = 0; // its index is relative to what it says is outside
+        m.index_of_refraction = relative_index(o, "bk7", 0.1);
         reflect(m, values_.reflectance(o, "specular_transmittance", dvec3(1)));
         note_unless_one(o, "specular_reflectance");
         if (o.type == "roughdielectric")

@@ -35,7 +35,7 @@ private:
     void make_principled(const object& o, material& m);
     void reflect(material& m, const varying& v);
     double roughness(const object& o, texture_use* texture);
-    double relative_index(const object& o, const char* if_absent);
+    double relative_index(const object& o, const char* if_absent, double least = 1);
     void note_unless_one(const object& o, const char* name);
 
     scene_builder& builder_;

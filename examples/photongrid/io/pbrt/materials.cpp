@@ -133,6 +133,7 @@ std::optional<std::uint32_t> material_reader::made(const entity& e, const std::s
     } else if (e.type == "dielectric") {
         m.kind = material_kind::glass;
         m.reflectance = dvec3(1);
+        m.priority = 0; // eta is relative to whatever is outside
         m.index_of_refraction = values_.index_of_refraction(e, "eta", 1.5);
         m.roughness = roughness(e, "", &m.roughness_texture);
     } else if (e.type == "thindielectric") {
@@ -149,8 +150,8 @@ std::optional<std::uint32_t> material_reader::made(const entity& e, const std::s
     } else {
         builder_.note(e.place, "material " + shown_word(e.type) + ": drawn as diffuse 0.5");
     }
-    if (m.index_of_refraction < 1) {
-        said("its index of refraction is below 1; 1 is used");
+    if (m.index_of_refraction < (m.kind == material_kind::glass ? 0.1 : 1.0)) {
+        said("its index of refraction is too small; 1 is used");
         m.index_of_refraction = 1;
     }
     return builder_.add_material(e.place, std::move(m));
