@@ -149,6 +149,20 @@ void material_writer::add_roughness(json& to, const material& m)
     to["metallicRoughnessTexture"] = texture(t, ".png", png(*t.map, rgba));
 }
 
+namespace {
+    /// KHR_materials_volume: a body; without it, it would be a film.
+    json volume_of(const material& m)
+    {
+        json volume = {{"thicknessFactor", 1}};
+        const auto& a = m.absorption;
+        if (const double most = std::max({a.x, a.y, a.z}); most > 0) {
+            volume["attenuationDistance"] = 1 / most;
+            volume["attenuationColor"] = {std::exp(-a.x / most), std::exp(-a.y / most), std::exp(-a.z / most)};
+        }
+        return volume;
+    }
+} // namespace
+
 void material_writer::add(const material& owner)
 {
     const auto* m = &owner;
@@ -180,7 +194,7 @@ void material_writer::add(const material& owner)
     if (is_glass)
         extend(made, "KHR_materials_transmission", {{"transmissionFactor", 1}});
     if (kind == surface_kind::refracting)
-        extend(made, "KHR_materials_volume", {{"thicknessFactor", 1}}); // a body; without it, it would be a film
+        extend(made, "KHR_materials_volume", volume_of(*m));
     else
         made["doubleSided"] = true;
     materials_.push_back(std::move(made));

@@ -148,6 +148,8 @@ void material_writer::write(text_writer& to)
                 write_roughness(to, m, rough);
                 if (m.reflectance != dvec3(1) || m.texture.map)
                     note(m, "pbrt's glass lets all light pass; its transmittance is left out");
+                if (m.absorption != dvec3(0))
+                    note(m, "its absorption is left out");
                 break;
             case material_kind::plastic:
                 write_reflectance(to.quoted("coateddiffuse"), m, color);
