@@ -423,6 +423,17 @@ namespace {
             material_kind::glass);
     }
 
+    TEST(mitsuba_file, paths_are_as_deep_as_the_integrators)
+    {
+        const auto depth = [](const std::string& most) {
+            return mitsuba_scene(xml_ball + "<integrator type=\"path\">" + most + "</integrator>")
+                .scene.render.view.depth;
+        };
+        EXPECT_EQ(depth("<integer name=\"max_depth\" value=\"9\"/>"), 8u);
+        EXPECT_EQ(depth("<integer name=\"max_depth\" value=\"-1\"/>"), view_settings().depth);
+        EXPECT_EQ(depth(""), view_settings().depth);
+    }
+
     // Mitsuba's plastic scatters base / (1 - F) below its coat, where F is what the coat throws back of diffuse light;
     // photongrid base / (1 - base F).
     TEST(mitsuba_file, plastic_keeps_the_colour_of_its_base)

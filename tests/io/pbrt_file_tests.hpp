@@ -253,6 +253,16 @@ namespace {
         EXPECT_EQ(mixed.materials.at(m.parts[1]).kind, material_kind::metal);
     }
 
+    TEST(pbrt_file, paths_are_as_deep_as_the_integrators)
+    {
+        const auto made
+            = parse_pbrt("s.pbrt", "Integrator \"volpath\" \"integer maxdepth\" [ 13 ]\nWorldBegin\n" + ball);
+        EXPECT_EQ(made.scene.render.view.depth, 13u);
+        EXPECT_EQ(made.scene.render.map.photon_depth, 13u);
+        const auto plain = parse_pbrt("s.pbrt", "Integrator \"path\"\nWorldBegin\n" + ball);
+        EXPECT_EQ(plain.scene.render.view.depth, view_settings().depth);
+    }
+
     TEST(pbrt_file, what_is_replaced_or_left_out_is_noted_with_its_place)
     {
         struct note_case {

@@ -26,9 +26,12 @@ namespace mitsuba {
             imported_scene read()
             {
                 const auto& scene = all_.scene();
+                for (const auto* i : scene.all_of("integrator"))
+                    if (const int depth = i->target->whole("max_depth", -1); depth > 0)
+                        builder_.set_depth(depth - 1); // without the camera's end
                 // What only others name, and how Mitsuba draws.
                 for (const auto* tag : {"bsdf", "texture", "spectrum", "medium", "phase", "volume", "subsurface",
-                         "integrator", "sampler", "film", "rfilter"})
+                         "sampler", "film", "rfilter"})
                     scene.all_of(tag);
                 read_camera(scene.all_of("sensor"));
                 for (const auto* s : scene.all_of("shape"))

@@ -68,6 +68,8 @@ namespace pbrt {
                         if (all_.film->parameters.find(name) != nullptr)
                             builder_.note(all_.film->place, std::string(name) + ": the whole picture is drawn");
                 }
+                if (all_.integrator && all_.integrator->parameters.find("maxdepth") != nullptr)
+                    builder_.set_depth(all_.integrator->parameters.whole("maxdepth", 5));
                 if (!all_.camera)
                     return;
                 const auto& e = *all_.camera;

@@ -109,7 +109,7 @@ enum class pixel_filter { box, tent };
 struct view_settings {
     std::uint32_t spp = 4;                   ///< eye rays per pixel and pass
     std::uint32_t light_samples = 8;         ///< shadow rays per light and eye ray; a point light needs one
-    std::uint32_t depth = 8;                 ///< the most reflections and refractions of an eye ray
+    std::uint32_t depth = 64;                ///< the most reflections and refractions of an eye ray
     pixel_filter filter = pixel_filter::box; ///< of pixels with several eye rays
 
     bool operator==(const view_settings&) const = default;

@@ -279,7 +279,8 @@ namespace setting_table {
             .slider = {0, 600, "%.0f s"}}};
     inline constexpr setting depth{"depth", of(&view_settings::depth), whole_range{0, 64}, in_scenes::optional,
         {.group = setting_group::light,
-            .what = "most reflections, refractions and clear surfaces that an eye ray follows"}};
+            .what = "most reflections, refractions and clear surfaces that an eye ray follows; past 8 faint rays end "
+                    "by Russian roulette"}};
     inline constexpr setting photon_depth{"photon_depth", of(&map_settings::photon_depth), whole_range{1, 64},
         in_scenes::optional, {.group = setting_group::photons, .what = "most surfaces that a photon path hits"}};
     inline constexpr setting emission{"emission", of(&map_settings::emission),

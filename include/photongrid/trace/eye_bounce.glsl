@@ -192,6 +192,23 @@ const uint ENDS = 2500u;
 const uint FACET = 4000u; // stratified too, and the same in all branches
 const uint PASSES = 10000u;
 const uint PART = 20000u;
+const uint FAINT = 15000u;
+
+const uint SURELY_FOLLOWED = 8u; // surfaces
+
+// Russian roulette (Arvo and Kirk, Particle Transport and Image Synthesis, 1990): past some surfaces faint rays end by
+// chance, and those that go on stand for them.
+bool ends_by_chance(uint i, uint hits)
+{
+    float brightness = largest3(vec3(throughput));
+    if (hits <= SURELY_FOLLOWED || !(brightness < 1.0f))
+        return false;
+    if (!(stratified_number(i, FAINT + hits) < brightness))
+        return true;
+    precise vec3 for_all = vec3(throughput) / brightness;
+    throughput = vec4(for_all.x, for_all.y, for_all.z, throughput.w);
+    return false;
+}
 
 // The ray passes a surface that is clear in part, or a pane.
 void pass_clear(Hit hit, vec3 d, vec3 share)
@@ -349,6 +366,10 @@ void kernel(uint i)
     if (on_mesh)
         hit = mesh_hit(number);
     uint hits = uint(direction.w);
+    if (ends_by_chance(i, hits)) {
+        point.w = -1.0f;
+        return;
+    }
     if (MEDIA)
         attenuate(hit.t < 0.0f ? 3.0e38f : hit.t);
     if (hit.t < 0.0f) {

@@ -232,7 +232,9 @@ void scene_builder::choose_settings()
     r.estimate.max_radius = std::clamp(0.1 * glm::length(b.high - b.low), 1e-6, max_length);
     r.view.spp = 1;
     r.view.light_samples = 2;
-    r.output.passes = 16; // about 20 s on two cores for 512 x 512 pixels
+    if (depth_)
+        r.view.depth = r.map.photon_depth = *depth_; // of eye rays and of photons: together they may have more
+    r.output.passes = 16;                            // about 20 s on two cores for 512 x 512 pixels
 }
 
 imported_scene scene_builder::finish()

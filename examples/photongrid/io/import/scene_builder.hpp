@@ -4,6 +4,7 @@
 #include <photongrid/io/import/import_log.hpp>
 #include <photongrid/io/import/scene_files.hpp>
 
+#include <algorithm>
 #include <glm/mat4x4.hpp>
 
 #include <cstdint>
@@ -94,6 +95,9 @@ public:
         const glm::dmat4& to_scene, const std::string& file = "");
     /// @}
 
+    /// The most surfaces of a path that the file wants, 0 to many.
+    void set_depth(int surfaces) { depth_ = static_cast<std::uint32_t>(std::clamp(surfaces, 1, 64)); }
+
     /// The area of a surface in the scene, in the file's unit squared.
     double area(const mesh& surface, const glm::dmat4& to_scene) const;
 
@@ -129,6 +133,7 @@ private:
     double unit_ = 1;
     glm::dmat4 world_{1}; ///< from the file's space to the scene's
     bool has_camera_ = false;
+    std::optional<std::uint32_t> depth_;      ///< the most surfaces of a path
     std::vector<source_place> sphere_places_; ///< of each sphere
     dvec3 sky_{0};
     std::optional<environment_light> environment_;

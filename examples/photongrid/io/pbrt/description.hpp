@@ -86,7 +86,7 @@ struct object_instance {
 
 /// A whole file with all that it includes.
 struct description {
-    std::optional<entity> camera, film, filter;
+    std::optional<entity> camera, film, filter, integrator;
     glm::dmat4 camera_to_world{1};
     std::vector<entity> materials; ///< the first one is that of shapes before any Material
     std::map<std::string, std::size_t> named_materials;

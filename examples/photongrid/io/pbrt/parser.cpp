@@ -86,7 +86,7 @@ namespace {
                 {"Film", &parser::read_film, directive::before_world},
                 {"PixelFilter", &parser::read_filter, directive::before_world},
                 {"Sampler", &parser::read_method, directive::before_world},
-                {"Integrator", &parser::read_method, directive::before_world},
+                {"Integrator", &parser::read_integrator, directive::before_world},
                 {"Accelerator", &parser::read_method, directive::before_world},
                 {"WorldBegin", &parser::begin_world, directive::before_world},
                 {"WorldEnd", &parser::end_world, directive::in_world}, // of older versions
@@ -213,6 +213,10 @@ namespace {
         void read_filter(token_reader& t, const source_place& place)
         {
             made_.filter = read_entity(t, place, "a filter's type");
+        }
+        void read_integrator(token_reader& t, const source_place& place)
+        {
+            made_.integrator = read_entity(t, place, "an integrator's type");
         }
         /// How pbrt draws the scene is no part of it.
         void read_method(token_reader& t, const source_place& place) { read_entity(t, place, "a type"); }
