@@ -42,8 +42,10 @@ namespace {
                 add(metal, kernels::BY_REFLECTION);
                 add(glass, kernels::BY_REFLECTION);
                 add(glass, kernels::BY_REFRACTION);
-                add(pane, kernels::BY_REFLECTION);
-                add(pane, kernels::BY_REFRACTION);
+                if (is_rough(pane)) { // smooth ones are meshes: see panes_let_pass_what_two_faces_do_not_reflect
+                    add(pane, kernels::BY_REFLECTION);
+                    add(pane, kernels::BY_REFRACTION);
+                }
                 add(plastic, kernels::BY_REFLECTION);
                 add(plastic, kernels::BY_BASE);
             }
