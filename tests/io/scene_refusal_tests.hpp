@@ -76,7 +76,7 @@ namespace {
         expect_refusal(refusal(9, "0.5", "0"), "9:53", {"found the number 0"});
         expect_refusal(refusal(9, "0.5", "-1"), "9:53", {"found the number -1"});
         expect_refusal(refusal(6, "0.7", "1.25"), "6:51", {"found the number 1.25", "from 0 to 1"});
-        expect_refusal(refusal(7, "1.5", "0.5"), "7:53", {"found the number 0.5", "1 to 10"});
+        expect_refusal(refusal(7, "1.5", "0.05"), "7:53", {"found the number 0.05", "0.1 to 10"});
         expect_refusal(
             refusal(13, "1000", "99999999999999999999"), "13:42", {"expected a whole number from 1 to 134217728"});
         expect_refusal(refusal(13, "1000", "-1"), "13:42", {"found the number -1"});

@@ -109,8 +109,9 @@ namespace {
                     EXPECT_EQ(value["minimum"], f.range.least);
                     EXPECT_EQ(value["maximum"], f.range.most);
                 } else {
-                    EXPECT_EQ(value["$ref"], "#/$defs/fraction");
-                    EXPECT_EQ(f.range.ends(), "0 to 1");
+                    const bool is_share = f.range.ends() == "0 to 1";
+                    EXPECT_EQ(value["$ref"], is_share ? "#/$defs/fraction" : "#/$defs/per_metre");
+                    EXPECT_EQ(f.range.most, is_share ? 1 : 1e9);
                 }
             }
         }
@@ -219,6 +220,7 @@ namespace {
         s.materials.push_back(s.materials[1]); // "clear", twice
         s.materials[2].index_of_refraction = 1.7;
         s.materials[2].roughness = 0.25;
+        s.materials[2].energy = facet_bounces::single;
         s.materials.push_back({"material 2", material_kind::mirror, dvec3(0.1, 1.0 / 3, 0.9)});
         s.spheres.push_back({{5, 1, 0}, 0.1, 2});
         s.spheres.push_back({{7, 1, 0}, 0.1, 3});
@@ -232,6 +234,8 @@ namespace {
         EXPECT_EQ(again.materials[1].roughness, 0);
         EXPECT_EQ(again.materials[2].index_of_refraction, 1.7);
         EXPECT_EQ(again.materials[2].roughness, 0.25);
+        EXPECT_EQ(again.materials[1].energy, facet_bounces::multiple);
+        EXPECT_EQ(again.materials[2].energy, facet_bounces::single);
     }
 
 } // namespace

@@ -161,6 +161,8 @@ namespace {
                     "coat"},
                 {R"("thin": {"type": "mirror", "opacity": 1.5})", "from 0 to 1"},
                 {R"("thin": {"type": "mirror", "roughness_texture": "a.png"})", "\"roughness_texture\""},
+                {R"("toy": {"type": "plastic", "reflectance": 0.5, "energy": "single"})", "\"energy\""},
+                {R"("thin": {"type": "metal", "reflectance": 0.5, "energy": "lots"})", "\"lots\""},
                 {R"("toy": {"type": "plastic", "reflectance": 0.5, "roughness_texture": "a.png"})",
                     "\"roughness_texture\""},
                 {R"("thin": {"type": "mirror", "opacity_texture": {"file": "a.png", "channel": "cyan"}})", "a.png"}}) {

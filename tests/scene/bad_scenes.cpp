@@ -345,6 +345,7 @@ namespace {
             {"index of refraction", [](scene& x) { x.materials[2].index_of_refraction = 0.5; },
                 "materials[2].index_of_refraction"},
             {"roughness", [](scene& x) { x.materials[1].roughness = 1.5; }, "materials[1].roughness"},
+            {"energy", [](scene& x) { x.materials[1].energy = static_cast<facet_bounces>(2); }, "materials[1].energy"},
             {"no axis", [](scene& x) { x.cylinders[0].top = x.cylinders[0].base; }, "cylinders[0].base and top"},
             {"no axis", [](scene& x) { x.cones[0].apex = x.cones[0].base; }, "cones[0].base and apex"},
             {"no axis", [](scene& x) { x.paraboloids[0].rim = x.paraboloids[0].vertex; },

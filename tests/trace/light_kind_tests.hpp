@@ -237,13 +237,44 @@ std::pair<dvec3, dvec3> ball_in_even_light(
     return {mean, known};
 }
 
+/// Of rough surfaces, too: light leaves facets at last.
+TYPED_TEST_P(light_kinds, rough_surfaces_in_a_white_environment_cannot_be_seen)
+{
+    scene s;
+    const auto white = [&](const char* name, material_kind kind, double roughness) {
+        s.materials.push_back({name, kind, dvec3(1), 1.5, roughness});
+    };
+    white("brushed", material_kind::metal, 0.6);
+    white("blasted", material_kind::metal, 1);
+    white("frosted", material_kind::glass, 0.6);
+    white("plastic", material_kind::plastic, 0.8);
+    s.materials.push_back({.name = "both", .kind = material_kind::mixture, .parts = {1, 2}});
+    for (std::uint32_t m = 0; m < 5; ++m)
+        s.spheres.push_back({{1.1 * m - 2.2, 0, 0}, 0.5, m});
+    s.environment_lights = {{"white", "", nullptr, dvec3(1, 2, 4)}};
+    s.camera = {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 14};
+    s.render = {.map = {.photons = 1000, .grid = {20, 20, 20}},
+        .estimate = {.k = 50, .max_radius = 0.2},
+        .view = {.spp = 4, .light_samples = 1, .depth = 40},
+        .output = {.width = 60, .height = 14, .only = light_part::direct}};
+    const auto seen = this->picture(s);
+    dvec3 means[5]{};
+    for (std::size_t i = 0; i < seen.pixels.size(); ++i) // a ball fills most of its fifth of the picture
+        means[i % 60 / 12] += dvec3(seen.pixels[i]) / (12.0 * 14);
+    for (int ball = 0; ball < 5; ++ball)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(means[ball][c] / (1 << c), 1, 0.015) << s.materials[static_cast<std::size_t>(ball)].name << c;
+}
+
 /// What a rough ball does not reflect, meets a second facet.
 TYPED_TEST_P(light_kinds, rough_metal_has_the_albedo_of_its_facets)
 {
     for (const double roughness : {0.1, 0.4, 0.7, 1.0}) {
         const dvec3 gold(1, 0.5, 0.25);
+        material metal{"metal", material_kind::metal, gold, 1.5, roughness};
+        metal.energy = facet_bounces::single;
         const auto [mean, known] = ball_in_even_light(
-            {"metal", material_kind::metal, gold, 1.5, roughness}, 1, [&](const scene& s) { return this->picture(s); },
+            metal, 1, [&](const scene& s) { return this->picture(s); },
             [&](double cosine) {
                 return gold * albedo_of_facets(cosine, roughness * roughness, [](double) { return 1.0; });
             });
@@ -339,7 +370,8 @@ TYPED_TEST_P(light_kinds, account_for_every_path)
 REGISTER_TYPED_TEST_SUITE_P(light_kinds, a_spotlight_has_its_intensity, a_sphere_lights_as_its_middle_does,
     directional_light_is_even_and_casts_shadows, an_environment_has_the_light_of_its_texels,
     the_camera_sees_the_environment, photons_and_shadow_rays_agree, of_which_samples_choose_add_up,
-    what_absorbs_nothing_in_a_white_environment_cannot_be_seen, rough_metal_has_the_albedo_of_its_facets,
-    plastic_has_the_albedo_of_its_coat_and_its_base, equal_the_serial_backends, account_for_every_path);
+    what_absorbs_nothing_in_a_white_environment_cannot_be_seen, rough_surfaces_in_a_white_environment_cannot_be_seen,
+    rough_metal_has_the_albedo_of_its_facets, plastic_has_the_albedo_of_its_coat_and_its_base,
+    equal_the_serial_backends, account_for_every_path);
 
 } // namespace photongrid::testing

@@ -70,6 +70,8 @@ namespace {
             forget_unless_had(&material::roughness);
             forget_unless_had(&material::opacity);
             forget_unless_had(&material::share);
+            if (!has_energy(detail::entry_of(m.kind)))
+                m.energy = plain.energy;
             if (!is_mixture(m))
                 m.parts = plain.parts;
             const auto write_texture = [&](texture_use& t, texture_holds holds) {

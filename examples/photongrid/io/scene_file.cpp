@@ -153,6 +153,11 @@ namespace {
                     made.*member = number_texture_in(*texture);
             if (const auto* texture = v.find("texture"))
                 made.texture = texture_in(*texture);
+            if (const auto* energy = v.find("energy")) {
+                const auto& names = facet_bounces_names;
+                const auto& word = one_of(*energy, {names.begin(), names.end()});
+                made.energy = static_cast<facet_bounces>(std::find(names.begin(), names.end(), word) - names.begin());
+            }
             checked(v, made);
             return made;
         }

@@ -49,6 +49,8 @@ namespace {
                     if (f.texture != nullptr)
                         kinds.back().keys.push_back({detail::texture_key(f.texture), may});
                 }
+                if (has_energy(m))
+                    kinds.back().keys.push_back({"energy", may});
                 if (m.surface == surface_kind::mixed)
                     kinds.back().keys.push_back({"materials", must});
                 else

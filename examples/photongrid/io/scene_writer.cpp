@@ -178,6 +178,8 @@ namespace {
                         all[f.key] = written(m.*member);
                 },
                 f.member);
+        if (has_energy(row) && m.energy != facet_bounces::multiple)
+            all["energy"] = facet_bounces_names[static_cast<std::size_t>(m.energy)];
         if (is_mixture(m))
             all["materials"] = {names.at(m.parts[0]), names.at(m.parts[1])};
         for (const auto& [key, member] : detail::number_textures)

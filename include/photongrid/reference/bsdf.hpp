@@ -44,6 +44,7 @@ struct specular_bounce {
     /// at most 8.
     double adjoint = 1;
     double weight = 1; ///< the share that is not lost on rough surfaces, divided by its probability
+    dvec3 tint{1};     ///< factor on the reflectance
 };
 
 /// At a refracting surface, `u` in [0, 1) selects reflection with Fresnel's probability. The caller applies the

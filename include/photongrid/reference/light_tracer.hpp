@@ -76,8 +76,10 @@ public:
         share_probabilities(lights_);
         irradiance_.resize(light_groups);
         std::vector<std::uint64_t> hits(light_groups, 0);
+        const surfaces met(s, shapes);
         share_out(light_groups, threads_for(settings.threads), "light_paths", static_cast<double>(stats.light_paths),
-            observer, [&](std::uint32_t group, watch& w) { hits[group] = trace_group(s, shapes, settings, group, w); });
+            observer,
+            [&](std::uint32_t group, watch& w) { hits[group] = trace_group(met, shapes, settings, group, w); });
         for (const auto h : hits)
             stats.caustic_hits += h;
     }
@@ -108,11 +110,10 @@ public:
 
 private:
     std::uint64_t trace_group(
-        const scene& s, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
+        const surfaces& met, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
     {
         std::vector<dvec3> flux(bins_.size(), dvec3(0));
         random_stream random(settings.seed, 1, group);
-        const surfaces met(s, shapes);
         std::uint64_t hits = 0;
         constexpr std::uint64_t paths_per_report = 1024;
         for (std::uint64_t done = 0; done < paths_per_group_;) {
@@ -161,7 +162,7 @@ private:
             const auto& m = met.of();
             const auto bounce = is_coated(m) ? off_coat(m, h, r.direction, random, true)
                 : is_diffuse(m)              ? specular_bounce{.weight = 0}
-                                             : specular_of_light(m, h, r.direction, random);
+                                             : met.bounce_of_light(h, r.direction, random);
             if (const auto* base = from_light ? nullptr : all.base(h)) { // else direct light: see the path tracer
                 const double passed = is_diffuse(m) ? 1 - bounce.weight : passes_coat(*base, h, r.direction, random);
                 flux[bins_.at(h, r.direction)] += power * passed * facing_normals(h, r.direction).received(r.direction);
@@ -174,7 +175,7 @@ private:
             if (bounce.adjoint == 0 || bounce.weight == 0)
                 return added;
             from_light = from_light && goes_straight_on(m, bounce);
-            power *= (is_coated(m) ? dvec3(1) : tint(met, bounce)) * (bounce.adjoint * bounce.weight);
+            power *= (is_coated(m) ? dvec3(1) : tint(met, bounce)) * bounce.tint * (bounce.adjoint * bounce.weight);
             if (bounce.refracted)
                 media.pass(met);
             r = {h.position, bounce.direction, h.shape};

@@ -66,8 +66,8 @@ public:
                 bounce = off_coat(m, h, r.direction, random, false);
             if (is_coated(m) && is_rough(m) && surfaces == 0 && specular_before < settings_.depth)
                 sum += throughput
-                    * (highlight(m, h, r.direction, media, random)
-                        + on_rough_.radiance(m, h, r.direction, random, group));
+                    * (highlight(met, h, r.direction, media, random)
+                        + on_rough_.radiance(met, h, r.direction, random, group));
             const bool by_coat = is_coated(m) && random() < bounce.weight;
             if (is_diffuse(m) && !by_coat) {
                 if (++surfaces > settings_.photon_depth)
@@ -95,12 +95,12 @@ public:
                 if (!by_coat) {
                     if (is_rough(m) && surfaces == 0)
                         sum += throughput * met.reflectance()
-                            * (highlight(m, h, r.direction, media, random)
-                                + on_rough_.radiance(m, h, r.direction, random, group));
-                    bounce = specular(m, h, r.direction, random);
+                            * (highlight(met, h, r.direction, media, random)
+                                + on_rough_.radiance(met, h, r.direction, random, group));
+                    bounce = met.bounce(h, r.direction, random);
                     if (bounce.refracted)
                         media.pass(met);
-                    throughput *= tint(met, bounce) * (bounce.radiance_scale * bounce.weight);
+                    throughput *= tint(met, bounce) * bounce.tint * (bounce.radiance_scale * bounce.weight);
                 }
                 if (!by_coat && goes_straight_on(m, bounce)) {
                     come = before + h.t;
@@ -139,19 +139,19 @@ private:
 
     /// The radiance of lights that rays cannot find, as a rough surface reflects or refracts it against d.
     dvec3 highlight(
-        const material& m, const hit& h, const dvec3& d, const path_media& media, random_stream& random) const
+        const met_material& met, const hit& h, const dvec3& d, const path_media& media, random_stream& random) const
     {
         const auto& light = chosen_of(shapes_.lights(), random);
         if (light.is_visible())
             return dvec3(0);
         const auto seen = shapes_.seen_from(light, h.position, random);
-        const double reflected
-            = rough_bsdf(m, h, d, seen.towards) * std::abs(glm::dot(seen.towards, facing_normals(h, d).shading));
-        if (!(reflected > 0) || seen.arriving == dvec3(0))
+        const dvec3 reflected
+            = met.bsdf(h, d, seen.towards) * std::abs(glm::dot(seen.towards, facing_normals(h, d).shading));
+        if (reflected == dvec3(0) || seen.arriving == dvec3(0))
             return dvec3(0);
         const dvec3 passes = surfaces_.share_through({h.position, seen.towards, h.shape}, seen.distance, seen.shape)
             * media.left_after(seen.distance);
-        return seen.arriving * (passes * reflected / light.probability);
+        return seen.arriving * reflected * passes / light.probability;
     }
 
     /// The irradiance of direct light, below a coat if there is one, by one shadow ray to a light chosen by power.

@@ -41,16 +41,18 @@ public:
         stats.bin_size = std::max(stats.bin_size, bins_.edge());
         stats.light_paths += paths_per_group_ * light_groups;
         groups_.resize(light_groups);
+        const surfaces met(s, shapes);
         share_out(light_groups, threads_for(settings.threads), "light_paths",
             static_cast<double>(paths_per_group_ * light_groups), observer,
-            [&](std::uint32_t group, watch& w) { trace_group(s, shapes, settings, group, w); });
+            [&](std::uint32_t group, watch& w) { trace_group(met, shapes, settings, group, w); });
     }
 
     bool empty() const { return groups_.empty(); }
 
-    /// An estimate of the radiance that a ray of direction d sees of it at `h`, with the material m there, divided by
-    /// the reflectance.
-    dvec3 radiance(const material& m, const hit& h, const dvec3& d, random_stream& random, std::uint32_t group) const
+    /// An estimate of the radiance that a ray of direction d sees of it at `h`, with the material `met` there, divided
+    /// by the reflectance.
+    dvec3 radiance(
+        const met_material& met, const hit& h, const dvec3& d, random_stream& random, std::uint32_t group) const
     {
         dvec3 sum(0);
         if (empty() || !bins_.has(h))
@@ -63,7 +65,7 @@ public:
                 continue;
             const auto& end = g.ends[g.first[bin] + std::min(n - 1, static_cast<std::size_t>(random() * double(n)))];
             const double per_power = static_cast<double>(n) / (areas_[bin] * static_cast<double>(paths_per_group_));
-            sum += dvec3(end.power) * (per_power * rough_bsdf(m, h, d, -glm::normalize(dvec3(end.direction))));
+            sum += dvec3(end.power) * (per_power * met.bsdf(h, d, -glm::normalize(dvec3(end.direction))));
         }
         return sum;
     }
@@ -85,11 +87,10 @@ private:
     }
 
     void trace_group(
-        const scene& s, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
+        const surfaces& met, const geometry& shapes, const reference_settings& settings, std::uint32_t group, watch& w)
     {
         std::vector<path_end> found;
         random_stream random(settings.seed, 3, group);
-        const surfaces met(s, shapes);
         constexpr std::uint64_t paths_per_report = 1024;
         for (std::uint64_t done = 0; done < paths_per_group_;) {
             const std::uint64_t past = std::min(paths_per_group_, done + paths_per_report);

@@ -4,11 +4,16 @@
 
 #include <photongrid/reference/bsdf.hpp>
 #include <photongrid/reference/random_stream.hpp>
+#include <photongrid/reference/rebounds.hpp>
 #include <photongrid/reference/texture.hpp>
 #include <photongrid/scene/media.hpp>
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <optional>
+#include <tuple>
+#include <vector>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -17,8 +22,9 @@ namespace photongrid::reference {
 /// A material at a hit.
 class met_material {
 public:
-    met_material(const material& m, std::uint32_t number, const hit& h)
-        : number_(number), material_(&m), reflectance_(m.reflectance * h.color * color_at(m.texture, h.coordinates))
+    met_material(const material& m, std::uint32_t number, const hit& h, const facet_rebounds* rebounds)
+        : number_(number), material_(&m), rebounds_(rebounds),
+          reflectance_(m.reflectance * h.color * color_at(m.texture, h.coordinates))
     {
         if (m.roughness_texture.map) {
             own_ = m;
@@ -28,21 +34,40 @@ public:
 
     /// Its index in scene::materials.
     std::uint32_t number() const { return number_; }
-    /// Sets its index of refraction relative to what lies outside.
+    /// Sets its index of refraction relative to what lies outside, if that is not air.
     void set_index(double index)
     {
         if (!own_)
             own_ = *material_;
         own_->index_of_refraction = index;
+        rebounds_ = nullptr; // they are those of the material's own index
     }
     /// With its roughness here, but its colour without textures.
     const material& of() const { return own_ ? *own_ : *material_; }
     /// With textures and the colours of vertices.
     const dvec3& reflectance() const { return reflectance_; }
 
+    /// The BSDF where it is rough, or of a rough coat: see rough_bsdf().
+    dvec3 bsdf(const hit& h, const dvec3& d, const dvec3& towards) const
+    {
+        return rough_bsdf(is_rough(of()) ? rebounds_ : nullptr, of(), reflectance_, h, d, towards);
+    }
+    /// How a ray goes on where it has no base: see specular().
+    specular_bounce bounce(const hit& h, const dvec3& d, random_stream& random) const
+    {
+        return is_rough(of()) && rebounds_ != nullptr ? rough(*rebounds_, of(), reflectance_, h, d, random)
+                                                      : specular(of(), h, d, random);
+    }
+    /// The same for power from a light.
+    specular_bounce bounce_of_light(const hit& h, const dvec3& d, random_stream& random) const
+    {
+        return is_rough(of()) ? bounce(h, d, random) : specular_of_light(of(), h, d, random);
+    }
+
 private:
     std::uint32_t number_;
     const material* material_;
+    const facet_rebounds* rebounds_; ///< null: none
     std::optional<material> own_;
     dvec3 reflectance_;
 };
@@ -132,6 +157,17 @@ public:
           any_clear_(std::any_of(s.materials.begin(), s.materials.end(),
               [](const material& m) { return is_clear(m) || is_smooth_pane(m); }))
     {
+        std::map<std::tuple<double, double, bool>, std::shared_ptr<const facet_rebounds>> made;
+        for (const auto& m : s.materials) {
+            rebounds_.push_back(nullptr);
+            if (!has_rebounds(m))
+                continue;
+            auto& one
+                = made[{refracts(m) ? m.index_of_refraction : 0, m.roughness, m.roughness_texture.map != nullptr}];
+            if (!one)
+                one = std::make_shared<const facet_rebounds>(m);
+            rebounds_.back() = one;
+        }
     }
 
     /// The media at a point.
@@ -149,9 +185,9 @@ public:
     {
         const auto& m = materials_[h.material];
         if (!is_mixture(m))
-            return {m, h.material, h};
+            return {m, h.material, h, rebounds_[h.material].get()};
         const auto number = m.parts[random() < m.share * number_at(m.share_texture, h.coordinates) ? 1 : 0];
-        return {materials_[number], number, h};
+        return {materials_[number], number, h, rebounds_[number].get()};
     }
 
     /// The first part that stores photons, or null.
@@ -188,7 +224,7 @@ private:
         const double opacity_here = opacity(m, h),
                      second = is_mixture(m) ? m.share * number_at(m.share_texture, h.coordinates) : 1;
         const auto straight = [&](std::uint32_t number) {
-            const met_material met(materials_[number], number, h);
+            const met_material met(materials_[number], number, h, nullptr);
             if (!is_thin(met.of()) || is_rough(met.of()))
                 return dvec3(0);
             return met.reflectance() * (1 - pane_reflectance(met.of(), -glm::dot(facing_normals(h, d).shading, d)));
@@ -208,6 +244,7 @@ private:
     const geometry& shapes_;
     media_places media_;
     bool any_clear_;
+    std::vector<std::shared_ptr<const facet_rebounds>> rebounds_; ///< by material; null: none
 };
 
 } // namespace photongrid::reference

@@ -33,12 +33,12 @@ OUTPUT(0, vec4, light)     // W/(m^2 sr)
 #include <photongrid/trace/rough_end.glsl>
 
 // The BSDF of a photon that arrives in direction d.
-float scattered_to_eye(Surface e, vec3 d)
+vec3 scattered_to_eye(Surface e, vec3 d)
 {
     bool front = !(dot3(d, e.shading) > 0.0f);
     bool geometric_front = !(dot3(d, e.geometric) > 0.0f);
     if (front != geometric_front)
-        return 0.0f;
+        return vec3(0.0f, 0.0f, 0.0f);
     e.way = front ? BY_REFLECTION : BY_REFRACTION;
     return scatter_eval(e, -d);
 }

@@ -24,6 +24,13 @@ namespace photongrid {
 /// `thin_glass` is a pane of glass as one surface.
 enum class material_kind { lambertian, mirror, metal, glass, plastic, mixture, thin_glass };
 
+/// What becomes of the light that one facet of rough metal or glass sends to another.
+enum class facet_bounces {
+    multiple, ///< it is scattered again, until it leaves
+    single,   ///< it is lost
+};
+inline constexpr std::array<const char*, 2> facet_bounces_names{"multiple", "single"}; ///< in scene files
+
 /// A material.
 struct material {
     std::string name;                               ///< any text; in a scene file, the key by which shapes refer to it
@@ -38,11 +45,12 @@ struct material {
                            ///< 0.001 it is smooth
     texture_use texture{}; ///< factor on the reflectance; on meshes with texture coordinates, as all textures
     double opacity = 1;    ///< of meshes, 0 to 1: the share of light that meets the surface; the rest goes straight on
-    texture_use opacity_texture{};            ///< factor on it
-    texture_use roughness_texture{};          ///< factor on the roughness of metal and glass
-    std::array<std::uint32_t, 2> parts{0, 0}; ///< of a mixture: indices of other materials (scene/mixture.hpp)
-    double share = 0.5;                       ///< of the second part, 0 to 1
-    texture_use share_texture{};              ///< factor on it
+    texture_use opacity_texture{};                  ///< factor on it
+    texture_use roughness_texture{};                ///< factor on the roughness of metal and glass
+    std::array<std::uint32_t, 2> parts{0, 0};       ///< of a mixture: indices of other materials (scene/mixture.hpp)
+    double share = 0.5;                             ///< of the second part, 0 to 1
+    texture_use share_texture{};                    ///< factor on it
+    facet_bounces energy = facet_bounces::multiple; ///< of metal and glass
     /// Of glass: what its inside absorbs of light on its way, rgb, 1/m: e^-absorption is left after a metre.
     dvec3 absorption{0};
     /// Of glass, 0 to 1000: where bodies overlap, the one of the highest priority is there; of equal ones the smallest.
@@ -187,6 +195,20 @@ inline bool is_smooth_pane(const material& m) { return is_thin(m) && (!is_rough(
 /// The parameter alpha of the distribution of facets (GGX); 0 of smooth surfaces.
 inline double alpha_of(const material& m) { return is_rough(m) ? m.roughness * m.roughness : 0; }
 
+/// Whether a kind of material has the member `energy`. A coat passes to its base what its facets hide.
+inline bool has_energy(const material_entry& kind)
+{
+    return kind.surface != surface_kind::coated && kind.surface != surface_kind::thin
+        && std::any_of(kind.fields.begin(), kind.fields.end(),
+            [](const material_field& f) { return f.texture == &material::roughness_texture; });
+}
+
+/// Whether light is scattered by several facets of the material, one after the other (trace/rebounds.glsl).
+inline bool has_rebounds(const material& m)
+{
+    return m.energy == facet_bounces::multiple && is_rough(m) && has_energy(detail::entry_of(m.kind));
+}
+
 namespace detail {
     /// The textures of a material that are numbers, by their names in scene files.
     inline constexpr std::array<std::pair<const char*, texture_use material::*>, 3> number_textures{
@@ -225,6 +247,8 @@ inline bool has_texture(const material& m)
 inline void check(const material& m)
 {
     detail::require(!is_mixture(m) || !m.texture.map, "texture: of a mixture; give its parts one");
+    detail::require(
+        static_cast<std::size_t>(m.energy) < facet_bounces_names.size(), "energy: must be one of the enumerators");
     for (const auto& [name, texture] : detail::number_textures) {
         detail::require(!(m.*texture).map || detail::has_texture(m, texture),
             std::string(name) + ": " + detail::entry_of(m.kind).name + " has none");

@@ -59,7 +59,7 @@ struct Photon {
 // Whether the colour of the surface that a photon left is not always that of its material.
 bool codes_colors()
 {
-    return TEXTURES || COATS || MIXTURES || CLEAR || MEDIA;
+    return TEXTURES || COATS || MIXTURES || CLEAR || REBOUNDS || MEDIA;
 }
 
 // What a path has hit, with the surface of its last event.
@@ -190,6 +190,11 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool
         return;
     }
     Scattered l = scatter_photon(s, facet, r.y, r.z, uvec4(photon.id, photon.frame, 0u, args.seed));
+    if (has_rebounds(s.material)) {
+        precise vec3 tinted = s.material.reflectance * l.tint;
+        survival = largest3(tinted); // of what r.x leaves; no larger than before
+        direction.w = color_code(tinted);
+    }
     // r.x is uniform below `survival`, so the same number also decides whether another facet hides the photon. What
     // hides it from a coat's reflection goes to the base.
     precise float unhidden_survival = survival * (is_coated(s) ? 1.0f : l.unhidden);
@@ -203,7 +208,7 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool
         precise vec3 scaled = at_base * l.power_scale;
         receive(scaled, s.shading, photon.inside);
     }
-    leave(hit, l.direction, s.shading, s.way == BY_REFRACTION ? behind : photon.inside);
+    leave(hit, l.direction, s.shading, l.way == BY_REFRACTION ? behind : photon.inside);
 }
 
 void kernel(uint i)
@@ -283,7 +288,7 @@ void kernel(uint i)
         Crossing c = crossing(photon.inside, s.number, s.outside, s.material.index_of_refraction);
         photon.inside = c.is_real ? c.in_front : c.behind;
         behind = c.behind;
-        s.material.index_of_refraction = c.index;
+        s.material = between_media(s.material, c);
         if (!c.is_real) {
             go_straight_on(hit, d, photon);
             return;

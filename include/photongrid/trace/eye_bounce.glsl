@@ -32,7 +32,7 @@ INPUT(2, vec4, mesh_normals)
 INPUT(3, vec4, mesh_shadings)
 INPUT(4, vec4, environment) // see environment.glsl
 INPUT(5, vec4, mesh_colors) // see mesh_color.glsl
-// xyz: origin, at the end the point hit, m; w: 0 in flight, an end_code() on a diffuse surface, -2 - alpha on a rough
+// xyz: origin, at the end the point hit, m; w: 0 in flight, a point_code() on a diffuse surface, -2 - alpha on a rough
 // one (rough_points.glsl), else -1
 STATE(0, vec4, point)
 STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
@@ -56,6 +56,7 @@ STATE(5, uint, branches)   // bit b: branch b must be traced for this pixel; bra
 #include <photongrid/trace/scatter.glsl>
 #include <photongrid/trace/met_surface.glsl>
 #include <photongrid/trace/media.glsl>
+#include <photongrid/trace/end_code.glsl>
 
 bool done()
 {
@@ -190,6 +191,7 @@ Branch branch_if_any(uint i, uint what, float share)
 const uint REFLECTS = 2000u;
 const uint ENDS = 2500u;
 const uint FACET = 4000u; // stratified too, and the same in all branches
+const uint REBOUND = 5000u;
 const uint PASSES = 10000u;
 const uint PART = 20000u;
 const uint FAINT = 15000u;
@@ -248,7 +250,7 @@ void end_on_base(Hit hit, Surface s, vec3 reflected)
     vec3 p = hit.position;
     if (SMOOTH) // shadow rays start off the surface about its shading normal
         p = ray_start(p, s.geometric, s.geometric);
-    point = vec4(p.x, p.y, p.z, is_counted() ? end_code(uint(surface.w)) : -1.0f);
+    point = vec4(p.x, p.y, p.z, is_counted() ? point_code(uint(surface.w)) : -1.0f);
     throughput = vec4(reflected.x, reflected.y, reflected.z, throughput.w);
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
 }
@@ -261,21 +263,24 @@ void end_on_rough(Hit hit, Surface s, vec3 reflected)
     point = vec4(hit.position.x, hit.position.y, hit.position.z, is_counted() ? code : -1.0f);
     direction.w = hit.normal.x;
     throughput = vec4(reflected.x, reflected.y, reflected.z, hit.normal.y);
-    emitted.w = inside_code(uint(surface.w), hit.normal.z);
+    emitted.w = end_code(hit.normal.z, s.material.reflectance, uint(surface.w));
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
 }
 
-// Some rays end on a rough surface for samples of lights: in a pass of their own, or every other one. In the first
-// branch the ray ends here.
-Branch rough_branch(uint i, uint hits)
+// Some rays end on a rough surface for samples of lights: in a pass of their own, or every other one; where no facet
+// loses light, rays in glass meet many surfaces, so that of later ones fewer end, and the factors of those that go on
+// make up no power of 2, but their number. In the first branch the ray ends here.
+Branch rough_branch(uint i, uint hits, bool rebounds)
 {
     Branch b;
     b.share = 1.0f;
     if (may_split()) {
         b.first = split_branch(1.0f).first;
     } else {
-        b.first = stratified_number(i, ENDS + hits) < 0.5f;
-        b.share = 2.0f;
+        precise float ending = rebounds && hits > 2u ? 1.0f / float(hits) : 0.5f;
+        b.first = stratified_number(i, ENDS + hits) < ending;
+        precise float share = 1.0f / (b.first ? ending : 1.0f - ending);
+        b.share = share;
     }
     return b;
 }
@@ -303,7 +308,7 @@ void scatter(uint i, Hit hit, Surface s, float met, uint behind)
     float share = 1.0f;
     vec2 r = vec2(0.0f, 0.0f);
     if (has_facets(s)) {
-        Branch b = rough_branch(i, hits);
+        Branch b = rough_branch(i, hits, has_rebounds(s.material));
         share = b.share;
         if (b.first) {
             precise vec3 ending = reflected * share;
@@ -332,21 +337,29 @@ void scatter(uint i, Hit hit, Surface s, float met, uint behind)
             reflected = of_way;
         }
     }
-    Scattered l = scatter_sample(s, facet, r.x, r.y, uvec4(0u, 0u, 0u, 0u));
+    vec4 again = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    if (has_rebounds(s.material))
+        again = sequence4(args.nth, uvec4(i + args.first_pixel, 0u, REBOUND + hits, args.seed));
+    Scattered l = scatter_sample(s, facet, r.x, r.y, again, uvec4(0u, 0u, 0u, 0u));
     precise float leaving = share * (branch_share * l.radiance_scale) * l.unhidden;
     if (!(leaving > 0.0f)) {
         point.w = -1.0f;
         return;
     }
     if (ROUGH) {
+        s.way = l.way;
         surface.x = scatter_pdf(s, l.direction);
         surface.y = 0.0f;
     }
     vec3 start = ray_start(hit.position, hit.normal, l.direction);
     point = vec4(start.x, start.y, start.z, 0.0f);
     direction = vec4(l.direction.x, l.direction.y, l.direction.z, float(hits + 1u));
+    if (has_rebounds(s.material)) {
+        precise vec3 tinted = reflected * l.tint;
+        reflected = tinted;
+    }
     throughput = vec4(reflected.x * leaving, reflected.y * leaving, reflected.z * leaving, throughput.w);
-    if (MEDIA && s.way == BY_REFRACTION)
+    if (MEDIA && l.way == BY_REFRACTION)
         surface.w = float(behind);
 }
 
@@ -408,7 +421,7 @@ void kernel(uint i)
         Crossing c = crossing(uint(surface.w), s.number, s.outside, s.material.index_of_refraction);
         surface.w = float(c.is_real ? c.in_front : c.behind);
         behind = c.behind;
-        s.material.index_of_refraction = c.index;
+        s.material = between_media(s.material, c);
         if (!c.is_real) {
             pass_clear(hit, d, vec3(met, met, met));
             return;

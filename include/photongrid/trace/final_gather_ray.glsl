@@ -15,7 +15,7 @@ struct Params {
 };
 PARAMS(Params)
 INPUT(0, vec4, scene)
-INPUT(1, vec4, ends)       // xyz, m; w > 0: on a diffuse surface, see end_code() of trace/inside_code.glsl
+INPUT(1, vec4, ends)       // xyz, m; w > 0: on a diffuse surface, see point_code() of trace/inside_code.glsl
 INPUT(2, vec4, surfaces)   // xyz: normal; w: material
 // As eye_ray.glsl starts eye rays.
 OUTPUT(0, vec4, point)
@@ -52,7 +52,7 @@ void kernel(uint i)
     vec3 d = cosine_direction(normal, u, v);
     vec3 start = ray_at(vec3(end), normal, ray_offset(vec3(end), scene(SCENE_SIZES).x));
     point = vec4(start.x, start.y, start.z, 0.0f);
-    surface = vec4(0.0f, 0.0f, 1.0f, float(inside_of_end(end.w)));
+    surface = vec4(0.0f, 0.0f, 1.0f, float(inside_of_point(end.w)));
     direction = vec4(d.x, d.y, d.z, 0.0f);
     if (COATS && lit.w >= 0.0f && material_of(uint(lit.w)).kind == COATED_SURFACE) {
         float passed = passes_coat(coat_of(uint(lit.w)), dot3(d, normal));

@@ -14,21 +14,25 @@ uint inside_of(float code)
 }
 
 // The w of the point where an eye ray ends on a diffuse surface: 1 in the air, more in media.
-float end_code(uint inside)
+float point_code(uint inside)
 {
     return MEDIA ? 1.0f + float(inside) : 1.0f;
 }
 
-uint inside_of_end(float code)
+uint inside_of_point(float code)
 {
     return MEDIA ? uint(code) - 1u : 0u;
 }
 
-float z_of(float x, float y, float code)
+// The z of a unit vector, with the sign of a code.
+float z_beside(float x, float y, float code)
 {
-    if (!MEDIA)
-        return code;
     precise float z2 = 1.0f - x * x - y * y;
     precise float z = sqrt(z2 > 0.0f ? z2 : 0.0f);
     return code < 0.0f ? -z : z;
+}
+
+float z_of(float x, float y, float code)
+{
+    return MEDIA ? z_beside(x, y, code) : code;
 }

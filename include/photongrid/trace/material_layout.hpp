@@ -31,7 +31,7 @@ inline std::vector<const texture_use*> put_materials(
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const auto& m = materials[i];
         w.put(m.reflectance, static_cast<uint>(entry_of(m.kind).surface));
-        w.put(dvec3(m.index_of_refraction, number_of(m.texture), alpha_of(m)), 0); // w: see write_coats
+        w.put(dvec3(m.index_of_refraction, number_of(m.texture), alpha_of(m)), 0); // w: see write_coats, write_rebounds
         w.put(dvec3(m.opacity, m.share, m.parts[0]), m.parts[1]);
         const double of_opacity = number_of(m.opacity_texture), of_roughness = number_of(m.roughness_texture),
                      of_share = number_of(m.share_texture);

@@ -7,6 +7,7 @@ struct Material {
     uint kind;                 // LAMBERTIAN_SURFACE, MIRROR_SURFACE, GLASS_SURFACE, COATED_SURFACE, THIN_SURFACE
     float index_of_refraction; // of glass and coats
     float alpha;               // of rough surfaces (trace/microfacet.glsl); 0: smooth
+    uint rebounds;             // of those, the record of their table (trace/rebounds.glsl); 0: none
 };
 
 // 1 + the number of the material's texture, or 0.
@@ -25,6 +26,7 @@ Material material_of(uint number)
     vec4 more = scene(at + 1u);
     m.index_of_refraction = more.x;
     m.alpha = more.z;
+    m.rebounds = m.kind == COATED_SURFACE ? 0u : uint(more.w);
     return m;
 }
 

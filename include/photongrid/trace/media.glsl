@@ -1,5 +1,5 @@
 // The media that a ray is in (scene/media.hpp): a set of them, as bits. Medium n has bit n; the highest one is there.
-// Included by kernels after their scene buffer, core/natural_exp.glsl and trace/scene_layout.glsl.
+// Included by kernels after their scene buffer, core/natural_exp.glsl and trace/materials.glsl.
 #include <photongrid/trace/inside_code.glsl>
 
 // Records of MEDIA_TABLE, rgb: absorption, 1/m; w: index of refraction.
@@ -27,6 +27,16 @@ struct Crossing {
     uint in_front;   // the media on the ray's side ...
     uint behind;     // ... and on the other one
 };
+
+// A material between other media than air: its facets then scatter light once, since the table of what they hide is that
+// of its own index.
+Material between_media(Material m, Crossing c)
+{
+    if (c.index != m.index_of_refraction)
+        m.rebounds = 0u;
+    m.index_of_refraction = c.index;
+    return m;
+}
 
 // The ray is in the media `inside`, and meets a material with this index of refraction.
 Crossing crossing(uint inside, uint material, bool outside, float index)

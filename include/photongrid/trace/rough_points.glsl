@@ -17,7 +17,7 @@ INPUT(2, vec4, directions)
 INPUT(3, vec4, throughputs)
 INPUT(4, vec4, surfaces)
 INPUT(5, vec4, emissions)
-OUTPUT(0, vec4, point)   // xyz, m; w: an end_code() where light may fall, else -1
+OUTPUT(0, vec4, point)   // xyz, m; w: a point_code() where light may fall, else -1
 OUTPUT(1, vec4, surface) // xyz: normal on the lit side; w: -1, no material: the light is not yet that below a coat
 
 #include <photongrid/trace/materials.glsl>
@@ -44,6 +44,6 @@ void kernel(uint i)
         Crossing c = crossing_at(ray, e);
         inside = args.behind != 0u ? c.behind : c.in_front;
     }
-    point = vec4(p.x, p.y, p.z, end_code(inside));
+    point = vec4(p.x, p.y, p.z, point_code(inside));
     surface = vec4(e.shading.x * side, e.shading.y * side, e.shading.z * side, -1.0f);
 }

@@ -9,10 +9,12 @@
 //     scatter_eval()    is the BSDF of light that comes from a direction, divided by the reflectance
 //     scatter_pdf()     is the density with which scatter_sample() draws a direction; of the base of a smooth mesh
 //                       it is about the shading normal, by which light is received, not about the geometric one, by
-//                       which photons leave
+//                       which photons leave. Where light rebounds between facets (trace/rebounds.glsl) it is that of
+//                       samples by all ways together
 //     is_delta()        whether there is but one direction: then the BSDF and the density are 0
 #include <photongrid/trace/coat.glsl>
 #include <photongrid/trace/microfacet.glsl>
+#include <photongrid/trace/rebounds.glsl>
 SWITCH(10, SMOOTH)
 SWITCH(17, ROUGH)
 
@@ -130,6 +132,8 @@ Facet facet_met(Surface s, float u, float v)
 struct Scattered {
     vec3 direction;       // unit
     float unhidden;       // share of the light that no other facet hides
+    uint way;             // by which it leaves: rebounds may lead to the other side
+    vec3 tint;            // factor on the reflectance
     float radiance_scale; // factor on radiance
     float power_scale;    // factor on the power of photons, which shading normals need (Veach, Robust Monte Carlo
                           // Methods for Light Transport Simulation, 1997, section 5.3); 0: none leaves
@@ -144,17 +148,56 @@ float shading_factor(Surface s, float geometric, float shading)
     return factor < 8.0f ? factor : 8.0f;
 }
 
-// By a facet of a rough surface.
-Scattered leave_facet(Surface s, Facet facet)
+bool starts_inside(Surface s)
+{
+    return GLASS && s.material.kind == GLASS_SURFACE && !s.outside;
+}
+
+// After rebounds between facets, for numbers from 0 to 1.
+Scattered leave_rebounds(Surface s, float side, float u, float v)
+{
+    Rebounds r = rebounds_of(s.material);
+    bool inside = starts_inside(s);
+    bool crosses = GLASS && s.material.kind == GLASS_SURFACE
+        && side < crossing_share(r, inside, s.material.index_of_refraction);
+    float cosine = rebound_cosine(r, inside != crosses, u);
+    precise float sine = sqrt(1.0f - cosine * cosine);
+    vec2 circle = unit_circle(v);
+    vec3 up = crosses ? -s.shading : s.shading;
+    Scattered l;
+    precise vec3 local = vec3(sine * circle.x, sine * circle.y, cosine);
+    l.direction = from_basis(local, up);
+    l.unhidden = 1.0f;
+    l.way = crosses ? BY_REFRACTION : BY_REFLECTION;
+    l.tint = rebound_tint(r, s.material);
+    float eta = inside ? s.material.index_of_refraction : 1.0f / s.material.index_of_refraction;
+    precise float eta2 = eta * eta;
+    l.radiance_scale = crosses ? eta2 : 1.0f;
+    l.power_scale = 1.0f;
+    return l;
+}
+
+// By a facet of a rough surface. `r`: numbers from 0 to 1, if light rebounds.
+Scattered leave_facet(Surface s, Facet facet, vec4 r)
 {
     bool reflected = s.way == BY_REFLECTION;
     Scattered l;
+    l.way = s.way;
+    l.tint = vec3(1.0f, 1.0f, 1.0f);
     l.direction = reflected ? reflect_direction(s.d, facet.normal) : facet.f.refracted;
     l.radiance_scale = reflected ? 1.0f : facet.f.radiance_scale;
     float up = reflected ? 1.0f : -1.0f;
     float cosine = dot3(l.direction, s.shading) * up;
     l.unhidden = cosine > 0.0f ? unhidden(cosine, s.material.alpha) : 0.0f;
     l.power_scale = 1.0f;
+    if (has_rebounds(s.material)) {
+        if (r.x < l.unhidden)
+            l.unhidden = 1.0f;
+        else
+            l = leave_rebounds(s, r.y, r.z, r.w);
+        up = l.way == BY_REFLECTION ? 1.0f : -1.0f;
+        cosine = dot3(l.direction, s.shading) * up;
+    }
     if (SMOOTH) {
         float side = dot3(l.direction, s.geometric) * up;
         l.power_scale = shading_factor(s, side, cosine);
@@ -170,6 +213,8 @@ Scattered leave_smooth(Surface s, Facet facet)
 {
     bool reflected = s.way == BY_REFLECTION;
     Scattered l;
+    l.way = s.way;
+    l.tint = vec3(1.0f, 1.0f, 1.0f);
     l.direction = reflected ? reflect_direction(s.d, s.shading) : facet.f.refracted;
     l.unhidden = 1.0f;
     l.radiance_scale = reflected ? 1.0f : facet.f.radiance_scale;
@@ -216,6 +261,8 @@ Scattered where_eye_rays_come_from(Surface s, Scattered l, float u)
 Scattered leave_base(Surface s, float u, float v, uvec4 stream)
 {
     Scattered l;
+    l.way = s.way;
+    l.tint = vec3(1.0f, 1.0f, 1.0f);
     l.unhidden = 1.0f;
     l.radiance_scale = 1.0f;
     l.power_scale = 1.0f;
@@ -234,20 +281,23 @@ Scattered leave_base(Surface s, float u, float v, uvec4 stream)
     return l;
 }
 
-// `facet`: what facet_met() found; u, v from 0 to 1: numbers that found it.
-Scattered scatter_sample(Surface s, Facet facet, float u, float v, uvec4 stream)
+// `facet`: what facet_met() found; u, v from 0 to 1: numbers that found it; `r`: others, if has_rebounds().
+Scattered scatter_sample(Surface s, Facet facet, float u, float v, vec4 r, uvec4 stream)
 {
     if (s.way == BY_BASE)
         return leave_base(s, u, v, stream);
     if (has_facets(s))
-        return leave_facet(s, facet);
+        return leave_facet(s, facet, r);
     return leave_smooth(s, facet);
 }
 
 // The same of a photon.
 Scattered scatter_photon(Surface s, Facet facet, float u, float v, uvec4 stream)
 {
-    Scattered l = scatter_sample(s, facet, u, v, stream);
+    vec4 r = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    if (has_rebounds(s.material))
+        r = random4(uvec4(stream.x, stream.y, 100u, stream.w));
+    Scattered l = scatter_sample(s, facet, u, v, r, stream);
     if (SMOOTH && s.way == BY_REFLECTION && is_delta(s))
         l = where_eye_rays_come_from(s, l, u);
     return l;
@@ -261,7 +311,7 @@ float reflected_share(Surface s, Facet facet)
     float share = facet.f.reflected;
     if (is_coated(s) && has_facets(s)) {
         s.way = BY_REFLECTION;
-        precise float seen = share * leave_facet(s, facet).unhidden;
+        precise float seen = share * leave_facet(s, facet, vec4(0.0f, 0.0f, 0.0f, 0.0f)).unhidden;
         share = seen;
     }
     return share;
@@ -279,7 +329,7 @@ float received_by_base(Surface s)
 
 // The BSDF of radiance, divided by the reflectance, and the density of directions, both in sr^-1.
 struct Scattering {
-    float bsdf;
+    vec3 bsdf;
     float density;
 };
 
@@ -287,7 +337,7 @@ struct Scattering {
 Scattering scattering_of_facets(Surface s, vec3 towards)
 {
     Scattering none;
-    none.bsdf = 0.0f;
+    none.bsdf = vec3(0.0f, 0.0f, 0.0f);
     none.density = 0.0f;
     float alpha = s.material.alpha;
     bool is_pane = is_thin(s.material);
@@ -326,6 +376,31 @@ Scattering scattering_of_facets(Surface s, vec3 towards)
     precise float scaled = reflected ? share : (1.0f - share) * eta * eta;
     precise float bsdf = density * scaled * unhidden(cosine, alpha) / cosine;
     Scattering found;
+    found.bsdf = vec3(bsdf, bsdf, bsdf);
+    found.density = density;
+    return found;
+}
+
+// The same with light that rebounds. `single`: by one facet.
+Scattering with_rebounds(Surface s, vec3 towards, Scattering single)
+{
+    bool reflected = s.way == BY_REFLECTION;
+    float side = dot3(towards, s.shading);
+    float cosine = reflected ? side : -side;
+    float seen_cosine = -dot3(s.d, s.shading);
+    if (!(cosine > 0.0f) || !(seen_cosine > 0.0f) || (!reflected && !is_glass(s.material)))
+        return single;
+    Rebounds r = rebounds_of(s.material);
+    bool inside = starts_inside(s);
+    float crosses = is_glass(s.material) ? crossing_share(r, inside, s.material.index_of_refraction) : 0.0f;
+    float mean = inside != reflected ? r.outside : r.inside; // on the side of `towards`
+    precise float by_rebounds = 0.318309886f * (reflected ? 1.0f - crosses : crosses)
+        * hidden_share(r, inside, seen_cosine) * (hidden_share(r, inside == reflected, cosine) / mean);
+    float eta = inside ? s.material.index_of_refraction : 1.0f / s.material.index_of_refraction;
+    precise float eta2 = reflected ? 1.0f : eta * eta;
+    precise vec3 bsdf = single.bsdf + rebound_tint(r, s.material) * (by_rebounds * eta2);
+    precise float density = (single.bsdf.x / eta2 + by_rebounds) * cosine;
+    Scattering found;
     found.bsdf = bsdf;
     found.density = density;
     return found;
@@ -337,12 +412,12 @@ Scattering scattering_of_base(Surface s, vec3 towards)
     float cosine = dot3(towards, s.shading);
     precise float even = cosine > 0.0f ? 0.318309886f : 0.0f;
     Scattering found;
-    found.bsdf = even;
+    found.bsdf = vec3(even, even, even);
     if (is_coated(s)) {
         Coat c = coat_of(s.number);
         precise float passed = even * passes_coat(c, cosine);
         precise float both = passed * passes_coat(c, -dot3(s.d, s.shading)) / c.mean_passed;
-        found.bsdf = both;
+        found.bsdf = vec3(both, both, both);
         precise float passing = passed / c.mean_passed;
         even = passing;
     }
@@ -356,14 +431,17 @@ Scattering scattering(Surface s, vec3 towards)
     if (s.way == BY_BASE)
         return scattering_of_base(s, towards);
     Scattering none;
-    none.bsdf = 0.0f;
+    none.bsdf = vec3(0.0f, 0.0f, 0.0f);
     none.density = 0.0f;
     if (!has_facets(s))
         return none;
-    return scattering_of_facets(s, towards);
+    Scattering found = scattering_of_facets(s, towards);
+    if (has_rebounds(s.material))
+        found = with_rebounds(s, towards, found);
+    return found;
 }
 
-float scatter_eval(Surface s, vec3 towards)
+vec3 scatter_eval(Surface s, vec3 towards)
 {
     return scattering(s, towards).bsdf;
 }

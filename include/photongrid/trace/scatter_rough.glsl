@@ -43,12 +43,12 @@ void kernel(uint i)
         return;
     e.way = front ? BY_REFLECTION : BY_REFRACTION;
     Scattering s = scattering(e, towards);
-    float share = s.bsdf;
+    vec3 share = s.bsdf;
     if (has_size) {
-        precise float weighted = s.bsdf * (light.w / (light.w + s.density));
+        precise vec3 weighted = s.bsdf * (light.w / (light.w + s.density));
         share = weighted;
     }
     precise vec3 seen = vec3(throughputs(ray)) * vec3(light) * share;
-    if (share > 0.0f)
+    if (largest3(share) > 0.0f)
         arriving = vec4(seen.x, seen.y, seen.z, 0.0f);
 }

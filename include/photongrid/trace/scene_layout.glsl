@@ -3,7 +3,7 @@
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint SCENE_TABLES = 32u;
-// No kind of shape has the numbers 4 to 7, 9 to 22 or 25, other SWITCHes (scene_feature).
+// No kind of shape has the numbers 4 to 7, 9 to 23 or 25, other SWITCHes (scene_feature).
 const uint MATERIAL_TABLE = 4u;
 const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
 const uint LIGHT_TABLE = 6u;    // see trace/light_record.glsl
@@ -57,6 +57,10 @@ const uint BY_REFLECTION = 1u;
 const uint BY_REFRACTION = 2u;
 
 const uint COAT_STEPS = 64u; // of the shares that pass a rough coat (trace/coat.glsl)
+
+// Of the shares of light that facets hide, by the cosine (trace/rebounds.glsl).
+const uint REBOUND_STEPS = 23u;
+const float REBOUND_SPREAD = 4.0f; // of the steps, in alphas
 
 const uint NO_MATERIAL = 0xFFFFFFFFu; // of a light's surface
 const uint NO_SHAPE = 0xFFFFFFFFu;

@@ -10,6 +10,7 @@
 #include <photongrid/trace/material_layout.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
 #include <photongrid/trace/moved_scene.hpp>
+#include <photongrid/trace/rebound_layout.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 #include <photongrid/trace/shape_tree.hpp>
 
@@ -38,14 +39,15 @@ enum scene_feature : uint {
     has_coats = 1u << 19,         ///< diffuse surfaces under a coat
     has_instances = 1u << 20,     ///< surfaces of triangles that stand in several places
     has_mixtures = detail::entry_of(material_kind::mixture).switches,
-    has_clear = 1u << 22, ///< surfaces through which some light goes straight on
-    has_media = 1u << 25, ///< glass that touches other glass, or absorbs (scene/media.hpp)
+    has_clear = 1u << 22,         ///< surfaces through which some light goes straight on
+    rebounds_on_rough = 1u << 23, ///< rough surfaces whose facets scatter light several times
+    has_media = 1u << 25,         ///< glass that touches other glass, or absorbs (scene/media.hpp)
 };
 
 static_assert(
     [] {
         std::uint32_t taken = has_mirrors | has_glass | has_meshes | has_smooth_meshes | has_textures | has_rough
-            | has_shape_tree | has_coats | has_instances | has_mixtures | has_clear | has_media;
+            | has_shape_tree | has_coats | has_instances | has_mixtures | has_clear | rebounds_on_rough | has_media;
         bool distinct = true;
         std::uint32_t before = kernels::SCENE_TABLES; // kinds of shapes with the same kernel code follow each other
         const auto take = [&](std::uint32_t number) {
@@ -204,7 +206,7 @@ namespace detail {
             for (const auto* part : parts_of(s_.materials, m)) {
                 const bool rough = is_rough(*part), specular = !is_diffuse(*part) || is_coated(*part);
                 features |= entry_of(part->kind).switches | (rough ? has_rough : 0u)
-                    | (is_smooth_pane(*part) ? has_clear : 0u);
+                    | (is_smooth_pane(*part) ? has_clear : 0u) | (has_rebounds(*part) ? rebounds_on_rough : 0u);
                 is_smooth_ = is_smooth_ || (specular && (!rough || part->roughness_texture.map));
             }
             return features;
@@ -387,6 +389,7 @@ namespace detail {
             if (!out_.shares_texels)
                 out_.meshes.texels = texels_of(out_.sources.textures);
             write_coats(w, out_.records, s_.materials);
+            write_rebounds(w, out_.records, s_.materials);
             enter(kernels::MEDIA_TABLE, w.next(), media_.media().size(), 1);
             for (const auto& m : media_.media())
                 w.put(m.absorption, m.index_of_refraction);

@@ -20,7 +20,7 @@ struct Params {
 };
 PARAMS(Params)
 INPUT(0, vec4, scene)
-INPUT(1, vec4, points)     // w > 0: compute direct light; see end_code() of trace/inside_code.glsl
+INPUT(1, vec4, points)     // w > 0: compute direct light; see point_code() of trace/inside_code.glsl
 INPUT(2, vec4, surfaces)   // xyz: normal; w: material, or -1
 INPUT(3, uvec4, faces)     // these four: see lights/mesh_light.glsl
 INPUT(4, vec4, planes)
@@ -119,7 +119,7 @@ void kernel(uint i)
     precise float density = light.radiance_per_power * dot3(found.direction, lit.normal) / found.per_power;
     arriving = vec4(light.power.x * received, light.power.y * received, light.power.z * received, density);
     if (MEDIA && found.has_ray) { // glass stops the ray, so that it is in one medium all the way
-        precise vec3 left = vec3(arriving) * left_after(inside_of_end(point.w), found.far);
+        precise vec3 left = vec3(arriving) * left_after(inside_of_point(point.w), found.far);
         arriving = vec4(left.x, left.y, left.z, density);
     }
 }

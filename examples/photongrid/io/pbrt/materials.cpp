@@ -154,6 +154,8 @@ std::optional<std::uint32_t> material_reader::made(const entity& e, const std::s
         said("its index of refraction is too small; 1 is used");
         m.index_of_refraction = 1;
     }
+    if (has_rebounds(m))
+        m.energy = facet_bounces::single; // as pbrt has it
     return builder_.add_material(e.place, std::move(m));
 }
 
