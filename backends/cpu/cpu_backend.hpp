@@ -117,13 +117,17 @@ namespace cpu {
 template <>
 struct device_triangles<cpu_backend> {
     cpu::buffer<float> nodes, blocks;
+    cpu::buffer<glm::vec4> planes;     ///< of the triangles in blocks
     glm::vec3 low{0}, high{0};         ///< box of all triangles, m
     cpu::buffer<glm::uvec4> instances; ///< see trace/instance.glsl; one element if there are none
     std::vector<cpu::wide_root> roots; ///< of the instances' surfaces
 
     uint instance_count() const { return static_cast<uint>(roots.size()); }
     /// Of the buffers of nodes and triangles.
-    std::size_t bytes() const { return (nodes.size() + blocks.size()) * sizeof(float); }
+    std::size_t bytes() const
+    {
+        return (nodes.size() + blocks.size()) * sizeof(float) + planes.size() * sizeof(glm::vec4);
+    }
 };
 /// The algorithm of that name.
 triangle_tree build_triangle_tree(cpu_backend& device, const mesh& m);

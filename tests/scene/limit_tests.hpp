@@ -84,23 +84,30 @@ TEST(loop_limits, many_lamps_do_not_multiply)
         << "each ray asks all shapes";
 }
 
-/// As shapes that single precision cannot resolve beside the rest of the scene.
-TEST(meshes, too_small_for_the_scene_are_refused)
+/// As shapes that single precision cannot resolve so far from others as small. A single one is where coordinates are
+/// finest, however small it is.
+TEST(meshes, too_small_for_their_place_are_refused)
 {
-    for (const double size : {1e-4, 1e-6}) { // of a floor of 2 m
+    for (const double size : {1e-4, 1e-6}) { // beside a floor of 2 m
         auto s = polygons_under_a_lamp(1, 20);
         s.meshes = {mesh_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0})};
         s.meshes[0].linear = glm::dmat3(size);
-        auto lamp = polygons_under_a_lamp(1, 20);
-        lamp.mesh_lights = {{"ember", s.meshes[0], dvec3(1)}};
-        for (const auto& [with, name] : {std::pair{s, "meshes[0]"}, {lamp, "mesh_lights[0]"}})
+        s.meshes[0].offset = {0.3, 0.2, 0.1};
+        EXPECT_NO_THROW(check(s));
+        auto two = s, lamp = s;
+        two.meshes.push_back(s.meshes[0]);
+        two.meshes[1].offset = {0, 3, 0};
+        lamp.mesh_lights = {{"ember", two.meshes[1], dvec3(1)}};
+        for (const auto& [with, name] : {std::pair{two, "meshes[1]"}, {lamp, "mesh_lights[0]"}})
             try {
                 const auto layout = lay_out(with);
                 EXPECT_GT(size, 1e-5);
-                EXPECT_EQ(layout.meshes.faces.size(), 1u);
+                EXPECT_EQ(layout.meshes.faces.size(), 2u);
             } catch (const std::invalid_argument& e) {
                 EXPECT_LT(size, 1e-5);
                 EXPECT_EQ(std::string(e.what()).find(name), 0u) << e.what();
+                EXPECT_NE(std::string(e.what()).find("steps of 2.38418579e-07 m there, 2.8"), std::string::npos)
+                    << e.what();
             }
     }
 }

@@ -5,17 +5,25 @@
 
 namespace photongrid::testing {
 
-/// A shape alone in a scene of any size, rays that hit it, and rays that leave the hits again.
-inline void reintersect(std::uint64_t seed, scene& s, rays& r)
+/// A shape alone in a scene of any size, rays that hit it, and rays that leave the hits again. `smaller`: a factor on
+/// its size; below 1 a wall is far behind it.
+inline void reintersect(std::uint64_t seed, scene& s, rays& r, double smaller = 1)
 {
     random_source u(seed);
     const auto number = [&] { return static_cast<double>(u()); };
     const double size = std::pow(10.0, 16 * number() - 8);
     const dvec3 bulb = size * dvec3(random_direction(u)),
                 at = -number() * bulb + 0.1 * size * dvec3(random_direction(u));
-    const double own = size * std::pow(10.0, -3 * number()), radius = own * (0.05 + number());
+    const double own = smaller * size * std::pow(10.0, -3 * (smaller < 1 ? 1 : number())),
+                 radius = own * (0.05 + number());
     const dvec3 axis(random_direction(u));
     s = empty_scene(bulb);
+    if (smaller < 1) {
+        const dvec3 away = glm::normalize(at), u = glm::normalize(glm::cross(away, axis)), v = glm::cross(away, u);
+        s.meshes = {
+            {"", std::make_shared<const mesh>(mesh{{glm::vec3(-u - v), glm::vec3(u - v), glm::vec3(u)}, {{0, 1, 2}}}),
+                glm::dmat3(size), at + size * away, 0}};
+    }
     switch (seed % 7) {
     case 0: s.spheres = {{at, own, 0}}; break;
     case 1: s.cylinders = {{at, at + own * axis, radius, 0}}; break;
@@ -37,7 +45,7 @@ inline void reintersect(std::uint64_t seed, scene& s, rays& r)
     for (int i = 0; i < 1000; ++i) {
         const dvec3 target = at - layout.center + own * number() * axis + 0.9 * radius * dvec3(random_direction(u));
         const dvec3 back(random_direction(u));
-        r.aim(glm::vec3(target + size * std::pow(10.0, -3 * number()) * back), target);
+        r.aim(glm::vec3(target + smaller * size * std::pow(10.0, -3 * number()) * back), target);
         r.leavings.back() = glm::vec4(random_direction(u), 0.0f);
     }
 }

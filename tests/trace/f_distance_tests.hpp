@@ -63,4 +63,36 @@ TYPED_TEST_P(hard_cases, f6_a_scene_far_away_renders_the_same)
     EXPECT_LE(difference, 0.005);
 }
 
+/// Vertices in double precision, as readers of files hand them to set_positions().
+TYPED_TEST_P(hard_cases, f6_a_mesh_far_away_looks_the_same)
+{
+    const auto room_at = [](const dvec3& at) {
+        auto s = empty_scene(at + dvec3(0.3, 1.7, 0.4));
+        const auto put = [&](double size, const dvec3& middle) {
+            std::vector<dvec3> places;
+            for (int i = 0; i < 8; ++i)
+                places.push_back(
+                    at + middle + size * dvec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
+            mesh m;
+            m.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+            set_positions(m, places);
+            s.meshes.push_back({"", std::make_shared<const mesh>(std::move(m)), glm::dmat3(1), dvec3(0), 0});
+        };
+        put(2, {0, 0.1, 0});
+        put(0.4, {0.2, -1.5, 0.1});
+        s.camera = {at + dvec3(0.1, 0.2, 1.9), at + dvec3(0, -1, 0), {0, 1, 0}, 60};
+        s.render = {
+            .map = {.photons = 8000}, .estimate = {.k = 80, .max_radius = 0.5}, .output = {.width = 32, .height = 32}};
+        return s;
+    };
+    const auto here = render(this->b(), room_at(dvec3(0))).picture;
+    for (const dvec3 at : {dvec3(500000.1, 5400000.1, 100), dvec3(0, -300.7, 0), dvec3(3e8 + 0.1, 0, 0)}) {
+        const auto there = render(this->b(), room_at(at)).picture;
+        const double difference = relative_mse(there, here);
+        this->report("F6", "relMSE of meshes moved to " + std::to_string(glm::length(at)) + " m:", difference);
+        EXPECT_LE(difference, 0.005);
+    }
+}
+
 } // namespace photongrid::testing

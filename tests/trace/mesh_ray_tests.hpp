@@ -30,7 +30,8 @@ inline ray_hit hit_by_all(const mesh& m, const glm::vec4& o, const glm::vec4& d)
         const auto t = corners_of(m, i);
         const float at = kernels::hit_triangle(t[0], t[1], t[2], r);
         if (at >= std::numeric_limits<float>::min()
-            && (at < hit.distance || (at == hit.distance && hit.triangle == no_id)))
+            && (at < hit.distance || (at == hit.distance && hit.triangle == no_id))
+            && !kernels::is_behind(detail::plane_of(t), t[0], t[1], t[2], r))
             hit = {at, static_cast<uint>(i)};
     }
     return hit;

@@ -4,6 +4,7 @@
 
 #include "../render/known_energy_tests.hpp"
 #include "../render/known_picture_tests.hpp"
+#include "mesh_leaving.hpp"
 #include "mesh_sets.hpp"
 
 namespace photongrid::testing {
@@ -109,6 +110,72 @@ TYPED_TEST_P(mesh_scenes, no_photon_leaves_a_closed_room)
         EXPECT_EQ(p.escaped, 0u) << "of " << p.emitted << " paths, with " << p.diffuse_hits << " hits";
         EXPECT_GT(p.diffuse_hits, 10 * p.emitted);
         expect_an_exact_account(p, s.render.map.photons);
+    }
+}
+
+/// Wide and flat, of large triangles, so that offsets of rays are a good part of its height.
+TYPED_TEST_P(mesh_scenes, no_photon_leaves_a_thin_box)
+{
+    for (const double height : {1e-2, 1e-4}) {
+        scene s;
+        s.materials = {{"white", material_kind::lambertian, dvec3(0.95)}};
+        mesh m;
+        for (uint i = 0; i < 8; ++i)
+            m.positions.emplace_back(
+                (i & 1u) != 0 ? 0.5 : -0.5, (i & 2u) != 0 ? 0.5 : -0.5, (i & 4u) != 0 ? 0.5 * height : -0.5 * height);
+        m.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+            {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+        const dvec3 x = glm::normalize(dvec3(1, 2, 3)), y = glm::normalize(glm::cross(x, dvec3(1, 0, 0)));
+        s.meshes = {{"", std::make_shared<const mesh>(m), glm::dmat3(x, y, glm::cross(x, y)), dvec3(0), 0}};
+        s.point_lights = {{"bulb", dvec3(0), dvec3(1)}};
+        s.camera = {dvec3(0, 0, 2), dvec3(0), {0, 1, 0}, 40};
+        s.render = {.map = {.photons = 60000, .photon_depth = 40, .grid = {12, 12, 12}}, .estimate = {.k = 50}};
+        const auto p = this->traced(s);
+        EXPECT_EQ(p.escaped, 0u) << "of " << p.emitted << " paths, with " << p.diffuse_hits << " hits, " << height;
+        expect_an_exact_account(p, s.render.map.photons);
+    }
+}
+
+TYPED_TEST_P(mesh_scenes, rays_that_leave_a_flat_mesh_do_not_hit_it)
+{
+    std::size_t cast = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        scene s;
+        const double size = flat_mesh(seed, s);
+        auto& b = this->b();
+        const auto device = upload_scene(b, s);
+        const auto away = leaving_rays(b, s, device, seed + 100, 5000, size);
+        const auto hits = surfaces_hit(b, device, away);
+        std::size_t again = 0;
+        for (std::size_t i = 0; i < away.size(); ++i) {
+            // The other place of the mesh is far away.
+            again += hits.places[i].w >= 0 && static_cast<double>(hits.places[i].w) < 200 * size ? 1 : 0;
+        }
+        EXPECT_EQ(again, 0u) << "of " << away.size() << ", seed " << seed;
+        cast += away.size();
+        if (!this->divides_exactly())
+            continue;
+        serial_backend serial;
+        const auto theirs = surfaces_hit(serial, upload_scene(serial, s), away);
+        EXPECT_EQ(count_different_bits(hits.places, theirs.places), 0u) << "seed " << seed;
+    }
+    EXPECT_GT(cast, 90000u);
+}
+
+/// A flat mesh under a lamp, as it is read from files: all its light is direct.
+TYPED_TEST_P(mesh_scenes, photons_of_a_flat_mesh_do_not_hit_it)
+{
+    for (const bool tilted : {false, true}) {
+        scene s;
+        s.materials = {{"white", material_kind::lambertian, dvec3(0.9)}};
+        const float z = tilted ? 0.3f : 0, more = tilted ? 0.4f : 0;
+        const mesh m{{{0, 0, z}, {1, 0, z + more}, {1, 1, z + 2 * more}, {0, 1, z + more}}, {{0, 1, 2}, {0, 2, 3}}};
+        s.meshes = {{"", std::make_shared<const mesh>(m), glm::dmat3(1), dvec3(0), 0}};
+        s.rectangle_lights = {{"lamp", {0, 0, 2}, {0, 1, 0}, {1, 0, 0}, dvec3(1)}};
+        s.render.map.photons = 1000; // none is found among 256 times as many
+        const auto p = this->traced(s);
+        EXPECT_EQ(p.stored, 0u) << (tilted ? "tilted" : "level");
+        EXPECT_GT(p.direct, 20000u);
     }
 }
 
@@ -245,7 +312,8 @@ TYPED_TEST_P(mesh_scenes, a_smooth_glass_ball_focuses_the_power_that_optics_pred
 }
 
 REGISTER_TYPED_TEST_SUITE_P(mesh_scenes, draw_what_their_polygons_draw, equal_the_serial_backends,
-    rooms_of_meshes_equal_the_serial_backends, no_photon_leaves_a_closed_room,
+    rooms_of_meshes_equal_the_serial_backends, no_photon_leaves_a_closed_room, no_photon_leaves_a_thin_box,
+    rays_that_leave_a_flat_mesh_do_not_hit_it, photons_of_a_flat_mesh_do_not_hit_it,
     photons_and_shadow_rays_light_by_the_same_normals, smooth_glass_and_mirrors_amid_lamps_cannot_be_seen,
     a_white_body_in_glass_amid_lamps_cannot_be_seen, a_smooth_glass_ball_focuses_the_power_that_optics_predicts,
     a_ball_amid_a_mesh_that_emits_has_the_known_radiance, photons_and_shadow_rays_of_a_mesh_that_emits_agree);

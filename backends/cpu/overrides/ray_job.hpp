@@ -12,6 +12,7 @@ namespace photongrid::cpu {
 struct ray_job {
     const float* nodes = nullptr; ///< see wide_tree.hpp
     const float* blocks = nullptr;
+    const glm::vec4* planes = nullptr;
     glm::vec3 low{0}, high{0};             ///< box of all triangles, m
     const glm::uvec4* instances = nullptr; ///< see trace/instance.glsl; null: there are none
     const wide_root* roots = nullptr;      ///< of their surfaces

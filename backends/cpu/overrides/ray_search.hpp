@@ -59,6 +59,7 @@ namespace cpu {
         ray_job j;
         j.nodes = device.elements(triangles.nodes).data();
         j.blocks = device.elements(triangles.blocks).data();
+        j.planes = device.elements(triangles.planes).data();
         j.low = triangles.low;
         j.high = triangles.high;
         if (triangles.instance_count() > 0) {

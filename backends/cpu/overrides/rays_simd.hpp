@@ -111,11 +111,21 @@ public:
     /// As hit_triangle() of the kernels, for a triangle of a block.
     float hit(const float* block, std::size_t triangle) const
     {
-        const auto corner = [&](std::size_t c) {
-            const float* x = block + 3 * c * wide + triangle;
-            return glm::vec3(x[0], x[wide], x[2 * wide]);
-        };
-        return kernels::hit_triangle(corner(0), corner(1), corner(2), ray_);
+        return kernels::hit_triangle(
+            corner(block, triangle, 0), corner(block, triangle, 1), corner(block, triangle, 2), ray_);
+    }
+    /// As is_behind() of the kernels.
+    bool leaves(const glm::vec4& plane, const float* block, std::size_t triangle) const
+    {
+        return kernels::is_behind(
+            plane, corner(block, triangle, 0), corner(block, triangle, 1), corner(block, triangle, 2), ray_);
+    }
+
+private:
+    static glm::vec3 corner(const float* block, std::size_t triangle, std::size_t c)
+    {
+        const float* x = block + 3 * c * wide + triangle;
+        return glm::vec3(x[0], x[wide], x[2 * wide]);
     }
 };
 
@@ -160,7 +170,7 @@ public:
             if (is_above_instances(j)) {
                 enter(j, kernels::first_of_leaf(now.child), now.enter);
             } else {
-                visit_block(block_of(j, now.child), now.child);
+                visit_block(j, now.child);
                 if (ANY && triangle_ != kernels::NO_TRIANGLE)
                     return false;
             }
@@ -220,15 +230,17 @@ private:
         ray_ = wide_ray(j.low, j.high, glm::vec3(j.origins[index_]), glm::vec3(j.directions[index_]));
     }
 
-    HWY_INLINE void visit_block(const float* block, uint leaf)
+    HWY_INLINE void visit_block(const ray_job& j, uint leaf)
     {
+        const float* block = block_of(j, leaf);
+        const glm::vec4* planes = j.planes + kernels::first_of_leaf(leaf) * wide;
         const uint all = (1u << (kernels::past_leaf(leaf) - kernels::first_of_leaf(leaf))) - 1; // its triangles
         for (uint some = ray_.passes_through(block) & all; some != 0; some &= some - 1) {
             const auto n = static_cast<std::size_t>(std::countr_zero(some));
             const float t = ray_.hit(block, n);
             const uint index = first_id_ + std::bit_cast<uint>(block[row_of_indices * wide + n]);
             if (t >= std::numeric_limits<float>::min() && t >= inside_.x && t <= inside_.y
-                && (t < closest_ || (t == closest_ && index < triangle_))) {
+                && (t < closest_ || (t == closest_ && index < triangle_)) && !ray_.leaves(planes[n], block, n)) {
                 closest_ = t;
                 triangle_ = index;
             }

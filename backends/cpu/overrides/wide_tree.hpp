@@ -59,9 +59,10 @@ public:
 
         device_triangles<cpu_backend> made;
         made.blocks = device.make<float>(blocks * block_rows * wide);
-        float* const to_blocks = device.elements_to_write(made.blocks).data();
+        made.planes = device.make<glm::vec4>(blocks * wide);
+        const targets to{device.elements_to_write(made.blocks).data(), device.elements_to_write(made.planes).data()};
         // The upper nodes, then what is below them, in pieces.
-        maker top{*this, to_blocks};
+        maker top{*this, to};
         wide_root whole{};
         if (has_instances) {
             top.above_instances = true;
@@ -73,7 +74,7 @@ public:
             s.root = top.add_tree(pair, s.first_block);
         if (!has_instances)
             whole = surfaces.begin()->second.root;
-        std::vector<maker> below(top.pieces.size(), maker{*this, to_blocks});
+        std::vector<maker> below(top.pieces.size(), maker{*this, to});
         run(below.size(), [&](std::size_t i) { below[i].add_tree(top.pieces[i].pair, top.pieces[i].first_block); });
 
         std::size_t size = top.nodes.size();
@@ -137,10 +138,16 @@ private:
         return kernels::is_leaf(id) ? contents{kernels::first_of_leaf(id), kernels::past_leaf(id), 1} : below_[id];
     }
 
+    /// Where blocks are written.
+    struct targets {
+        float* blocks;
+        glm::vec4* planes; ///< `wide` for each block
+    };
+
     /// Makes nodes and blocks of pairs.
     struct maker {
         const tree_widener& from;
-        float* blocks;
+        targets to;
         std::size_t most_in_piece = 0; ///< children of up to so many triangles become pieces
         bool above_instances = false;
         std::vector<float> nodes{};
@@ -243,16 +250,19 @@ private:
 
         uint write_block(uint block, const contents& triangles)
         {
-            float* const to = blocks + std::size_t{block} * block_rows * wide;
-            std::fill_n(to, block_rows * wide, 0.0f);
+            float* const rows = to.blocks + std::size_t{block} * block_rows * wide;
+            glm::vec4* const planes = to.planes + std::size_t{block} * wide;
+            std::fill_n(rows, block_rows * wide, 0.0f);
+            std::fill_n(planes, wide, glm::vec4(0));
             for (uint i = 0; i < triangles.size(); ++i) {
                 const auto* corners = &from.from_.corners[kernels::TRIANGLE_RECORDS * (triangles.first + i)];
                 for (std::size_t c = 0; c < 3; ++c) {
                     const glm::vec3 p = kernels::corner_of(corners[c]);
                     for (std::size_t axis = 0; axis < 3; ++axis)
-                        to[(3 * c + axis) * wide + i] = p[static_cast<int>(axis)];
+                        rows[(3 * c + axis) * wide + i] = p[static_cast<int>(axis)];
                 }
-                to[row_of_indices * wide + i] = std::bit_cast<float>(corners[0].w);
+                rows[row_of_indices * wide + i] = std::bit_cast<float>(corners[0].w);
+                planes[i] = from.from_.planes[triangles.first + i];
             }
             return kernels::leaf_of(block, triangles.size());
         }

@@ -55,12 +55,19 @@ namespace ply {
                     return;
                 const bool is_vertex = e.name == "vertex", has_normals = is_smooth(), has_coordinates = is_mapped(),
                            has_colors = is_colored();
-                if (is_vertex)
+                // Single precision holds what nearly all files have; the others' positions are kept in double until all
+                // are known.
+                const bool is_single = std::all_of(e.properties.begin(), e.properties.end(), [&](const property& p) {
+                    return p.use > role::z || (p.type == scalar::f32 && format_ != format::ascii);
+                });
+                std::vector<glm::dvec3> places;
+                if (is_vertex && is_single)
                     made_.positions.reserve(made_.positions.size() + e.count);
                 for (const auto& p : e.properties)
                     if (p.use == role::corners) // most files have triangles alone
                         made_.triangles.reserve(made_.triangles.size() + e.count);
                 std::array<float, static_cast<std::size_t>(role::corners)> v{};
+                glm::dvec3 place(0);
                 for (std::uint64_t i = 0; i < e.count; ++i) {
                     for (const auto& p : e.properties) {
                         if (p.use == role::corners && read_corners_of_32_bits(p))
@@ -69,11 +76,15 @@ namespace ply {
                             read_list(p);
                         else if (p.use == role::none)
                             (void)next(p.type);
-                        else
+                        else if (p.use > role::z || is_single)
                             v[static_cast<std::size_t>(p.use)] = number_for(p);
+                        else
+                            place[static_cast<int>(p.use)] = coordinate(p.type);
                     }
-                    if (is_vertex)
+                    if (is_vertex && is_single)
                         made_.positions.emplace_back(v[0], v[1], v[2]);
+                    else if (is_vertex)
+                        places.push_back(place);
                     if (is_vertex && has_normals)
                         made_.normals.emplace_back(v[3], v[4], v[5]);
                     if (is_vertex && has_coordinates)
@@ -81,6 +92,8 @@ namespace ply {
                     if (is_vertex && has_colors)
                         made_.colors.emplace_back(v[8], v[9], v[10]);
                 }
+                if (is_vertex && !is_single)
+                    set_positions(made_, places);
             }
             float number_for(const property& p)
             {
@@ -95,7 +108,7 @@ namespace ply {
                         return linear_value(static_cast<unsigned char>(code));
                     }
                     return limited(p.type, 0, 1, "a colour that is neither a byte nor a number from 0 to 1");
-                default: return coordinate(p.type);
+                default: return static_cast<float>(coordinate(p.type));
                 }
             }
             float limited(scalar type, double least, double most, const char* otherwise)
@@ -105,14 +118,14 @@ namespace ply {
                     fail(otherwise);
                 return static_cast<float>(d);
             }
-            float coordinate(scalar type)
+            double coordinate(scalar type)
             {
                 const double d = type == scalar::f32 && format_ == format::little_endian && bytes_.size() - at_ >= 4
                     ? binary_as<float>() // as nearly all files have them
                     : next(type);
                 if (!(std::abs(d) <= 1e18))
                     fail("a coordinate that is not finite or above 10^18");
-                return static_cast<float>(d);
+                return d;
             }
             void read_list(const property& p)
             {

@@ -12,12 +12,13 @@ std::string ply_bytes(const mesh& m)
 {
     check(m);
     std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(m.positions.size());
-    const auto declare = [&](bool has, std::initializer_list<const char*> names) {
+    const auto declare = [&](bool has, std::initializer_list<const char*> names, const char* type = "float") {
         if (has)
             for (const auto* name : names)
-                bytes += std::string("\nproperty float ") + name;
+                bytes += std::string("\nproperty ") + type + " " + name;
     };
-    declare(true, {"x", "y", "z"});
+    const bool is_far = m.origin != glm::dvec3(0);
+    declare(true, {"x", "y", "z"}, is_far ? "double" : "float");
     declare(!m.normals.empty(), {"nx", "ny", "nz"});
     declare(!m.texture_coordinates.empty(), {"u", "v"});
     declare(!m.colors.empty(), {"red", "green", "blue"});
@@ -28,7 +29,10 @@ std::string ply_bytes(const mesh& m)
         bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
     };
     for (std::size_t v = 0; v < m.positions.size(); ++v) {
-        append(m.positions[v]);
+        if (is_far)
+            append(m.origin + glm::dvec3(m.positions[v]));
+        else
+            append(m.positions[v]);
         if (!m.normals.empty())
             append(m.normals[v]);
         if (!m.texture_coordinates.empty())

@@ -109,7 +109,7 @@ namespace {
             const auto is_below = [](const glm::vec3& v) {
                 return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= 1e9f;
             };
-            return std::all_of(s.positions.begin(), s.positions.end(), is_below)
+            return is_below(glm::vec3(s.origin)) && std::all_of(s.positions.begin(), s.positions.end(), is_below)
                 && std::all_of(s.normals.begin(), s.normals.end(),
                     [&](const glm::vec3& n) { return is_below(n) && glm::length(glm::dvec3(n)) >= 1e-8; });
         }

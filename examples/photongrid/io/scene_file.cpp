@@ -79,11 +79,16 @@ namespace {
             const auto& shapes = at(root(), "shapes");
             if (count_shapes(scene_) == 0)
                 fail(shapes.place, detail::no_shape);
+            const auto number = [&](const detail::shape_place& p) {
+                return std::distance(shape_places_.begin(), std::find(shape_places_.begin(), shape_places_.end(), p));
+            };
+            if (const auto bad = detail::unresolved_in(detail::extent_of(scene_))) {
+                const auto n = static_cast<std::size_t>(number(bad->place));
+                if (n == shape_places_.size()) // a lamp
+                    fail(at(root(), "lights").place, bad->place.text() + ": " + bad->what);
+                fail(shapes.items[n].place, bad->what);
+            }
             if (const auto pair = detail::overlapping_glass(scene_)) {
-                const auto number = [&](const detail::shape_place& p) {
-                    return std::distance(
-                        shape_places_.begin(), std::find(shape_places_.begin(), shape_places_.end(), p));
-                };
                 const auto [first, second] = std::minmax({number((*pair)[0]), number((*pair)[1])});
                 fail(shapes.items[static_cast<std::size_t>(second)].place,
                     "is glass and overlaps shapes[" + std::to_string(first)

@@ -55,7 +55,10 @@ namespace {
         } else {
             json positions = json::array(), triangles = json::array();
             for (const auto& p : m.surface->positions)
-                positions.push_back({as_written(p.x), as_written(p.y), as_written(p.z)});
+                if (m.surface->origin == dvec3(0))
+                    positions.push_back({as_written(p.x), as_written(p.y), as_written(p.z)});
+                else
+                    positions.push_back(three(m.surface->origin + dvec3(p)));
             for (const auto& t : m.surface->triangles)
                 triangles.push_back({t.x, t.y, t.z});
             all["positions"] = std::move(positions);

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <type_traits>
+#include <vector>
 
 namespace photongrid {
 
@@ -102,12 +103,14 @@ private:
     mesh inline_mesh(const json_value& positions, const json_value& triangles, const json_value* normals) const
     {
         mesh m;
+        std::vector<dvec3> places;
         read_list(positions, json_limits{}.values, "positions", [&](const json_value& p) {
-            m.positions.emplace_back(three(p, "a position: [x, y, z]",
+            places.push_back(three(p, "a position: [x, y, z]",
                 [&](const json_value& c) { return number(c, -1e9, 1e9, "a coordinate from -1e9 to 1e9"); }));
         });
-        if (m.positions.empty())
+        if (places.empty())
             wrong(positions, "at least one position");
+        set_positions(m, places);
         read_list(triangles, json_limits{}.values, "triangles", [&](const json_value& t) {
             m.triangles.emplace_back(
                 three(t, "a triangle: the numbers of 3 positions, counted from 0", [&](const json_value& c) {

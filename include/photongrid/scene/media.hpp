@@ -190,14 +190,19 @@ inline void part_walls(scene& s, const std::vector<medium>& media)
     if (media.empty())
         return;
     const bounds all = bounds_of(s);
-    const double step = 0x1p-15 * glm::length(all.high - all.low);
+    const dvec3 middle = 0.5 * (all.low + all.high);
+    double farthest = 0; // m; rays' offsets are a part of that
+    for (const auto& b : detail::glass_bodies(s))
+        for (const auto& box : b.boxes)
+            farthest = std::max({farthest, glm::length(box.high - middle), glm::length(box.low - middle)});
+    const double step = 0x1p-14 * farthest;
     const auto growth = [&](std::uint32_t material) {
-        double far = 0;
+        double more = 0;
         detail::for_each_medium_of(s, media, material, [&](std::size_t n) {
             if (!media[n].is_interface)
-                far = step * static_cast<double>(media.size() - 1 - n);
+                more = step * static_cast<double>(media.size() - 1 - n);
         });
-        return far;
+        return more;
     };
     for (auto& x : s.spheres)
         x.radius += growth(x.material);

@@ -31,7 +31,10 @@ struct placed_mesh {
 };
 
 /// The place of a vertex of the surface in the scene, m.
-inline dvec3 place_of(const placed_mesh& m, const glm::vec3& vertex) { return m.linear * dvec3(vertex) + m.offset; }
+inline dvec3 place_of(const placed_mesh& m, const glm::vec3& vertex)
+{
+    return m.linear * (dvec3(vertex) + m.surface->origin) + m.offset;
+}
 
 /// Whether the placement exchanges inside and outside, as a mirror does.
 inline bool is_mirrored(const placed_mesh& m) { return glm::determinant(m.linear) < 0; }

@@ -96,18 +96,19 @@ namespace detail {
     {
         const dvec3 n = glm::normalize(area_vector(p));
         w.put_plane(n, p.vertices[0]);
+        const double rounding = w.rounding(p.vertices);
         double off = 0; // vertices may lie slightly off the plane
         for (const auto& v : p.vertices)
             off = std::max(off, std::abs(glm::dot(n, v - p.vertices[0])));
-        w.put(dvec3(static_cast<double>(p.vertices.size()), p.material, static_cast<double>(light)),
-            w.rounding() + 2 * off);
+        w.put(
+            dvec3(static_cast<double>(p.vertices.size()), p.material, static_cast<double>(light)), rounding + 2 * off);
         for (std::size_t i = 0; i < p.vertices.size(); ++i) {
             const auto& a = p.vertices[i];
             const auto& b = p.vertices[(i + 1) % p.vertices.size()];
             const dvec3 across = glm::cross(n, b - a); // into the polygon
             const double length = glm::length(across);
             const dvec3 inward = length > 0 ? across / length : dvec3(0);
-            w.put(inward, glm::dot(inward, a - w.center()) - w.rounding()); // inflated, so that neighbours overlap
+            w.put(inward, glm::dot(inward, a - w.center()) - rounding); // inflated, so that neighbours overlap
         }
         for (const auto& v : p.vertices)
             w.put_position(v, 0);

@@ -3,6 +3,7 @@
 
 #include <photongrid/scene/check.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -16,9 +17,10 @@ inline glm::dvec2 halves_of(std::size_t n) { return {static_cast<double>(n >> 16
 /// Writes the records of shapes and lights. The kernel files that read them describe their layouts.
 class record_writer {
 public:
-    /// Appends to `out`; `center` is subtracted from positions; `scale` is half the scene's diagonal, m.
+    /// Appends to `out`; `center` is subtracted from positions; `scale`, m: the largest coordinate by which rounding is
+    /// bounded, half the scene's diagonal; 0: that of each shape.
     record_writer(std::vector<glm::vec4>& out, const dvec3& center, double scale)
-        : out_(out), center_(center), rounding_(scale * 0x1p-20)
+        : out_(out), center_(center), scale_(scale)
     {
     }
 
@@ -37,15 +39,22 @@ public:
 
     /// Subtracted from positions, m.
     const dvec3& center() const { return center_; }
-    /// A bound on the rounding error of distances from planes and edges, m.
-    double rounding() const { return rounding_; }
+    /// A bound on the rounding error of distances from planes and edges of a shape with these vertices, m.
+    double rounding(const std::vector<dvec3>& vertices) const
+    {
+        double farthest = scale_;
+        if (scale_ == 0)
+            for (const auto& v : vertices)
+                farthest = std::max(farthest, glm::length(v - center_));
+        return farthest * 0x1p-20;
+    }
     /// The number of the next record.
     std::uint32_t next() const { return static_cast<std::uint32_t>(out_.size()); }
 
 private:
     std::vector<glm::vec4>& out_;
     dvec3 center_;
-    double rounding_;
+    double scale_;
 };
 
 } // namespace photongrid

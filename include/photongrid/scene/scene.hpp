@@ -277,6 +277,114 @@ namespace detail {
         return std::nullopt;
     }
 
+    /// A shape, or the surface of a lamp, beside others of a scene.
+    struct sized_shape {
+        shape_place place;
+        bounds box{};          ///< m
+        double size = 0;       ///< m
+        double round_size = 0; ///< of curved ones, m: what rounding on them grows with, wherever they are hit
+    };
+
+    /// How large a scene and its shapes are, and the point from which kernels measure.
+    struct scene_extent {
+        bounds all;             ///< of all shapes and lights
+        double scale = 0;       ///< half its diagonal, m
+        bool is_even = true;    ///< no shape is smaller than 2^-13 of it, so one bound of rounding errors serves all
+        dvec3 center{0};        ///< m; with few bits, so that adding it to another point is exact
+        sized_shape smallest{}; ///< of those that kernels must resolve
+        std::vector<sized_shape> shapes; ///< all of those; the meshes come last but for lights
+        std::vector<bounds> meshes;      ///< their boxes
+    };
+
+    /// Lamps that are balls are left out of the shapes: rays start on none, and their rounding is their own.
+    inline scene_extent extent_of(const scene& s)
+    {
+        scene_extent e;
+        const auto add = [&](const char* list, std::size_t i, const bounds& box, double size, double round_size) {
+            e.shapes.push_back({{list, i}, box, size, round_size});
+        };
+        for_each_shape(s, [&](const auto& list, auto kind) {
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                bounds box;
+                kind.add_bounds(box, list[i]);
+                e.all.add(box);
+                const bool is_curved = !std::is_same_v<item_of<decltype(list)>, photongrid::box>;
+                add(kind.list, i, box, kind.size(list[i]), is_curved ? kind.round_size(list[i]) : 0);
+            }
+        });
+        const auto add_mesh = [&](const char* list, std::size_t i, const bounds& box) {
+            e.all.add(box);
+            add(list, i, box, glm::length(box.high - box.low), 0);
+        };
+        for (const auto& m : s.meshes) {
+            shape_kind<placed_mesh>::add_bounds(e.meshes.emplace_back(), m);
+            add_mesh(shape_kind<placed_mesh>::list, e.meshes.size() - 1, e.meshes.back());
+        }
+        for_each_light(s, [&](const auto& list, auto kind) {
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                bounds box;
+                kind.add_bounds(box, list[i]);
+                if constexpr (std::is_same_v<item_of<decltype(list)>, mesh_light>)
+                    add_mesh(kind.list, i, box);
+                else if constexpr (std::is_same_v<item_of<decltype(list)>, rectangle_light>)
+                    add(kind.list, i, box, kind.size(list[i]), 0);
+                e.all.add(box);
+            }
+        });
+        if (e.shapes.empty())
+            return e;
+        e.scale = 0.5 * glm::length(e.all.high - e.all.low);
+        e.smallest = *std::min_element(e.shapes.begin(), e.shapes.end(),
+            [](const sized_shape& a, const sized_shape& b) { return a.size < b.size; });
+        e.is_even = e.smallest.size >= e.scale * 0x1p-13;
+        const auto& around = e.is_even ? e.all : e.smallest.box;
+        const double step = std::exp2(std::floor(std::log2(e.is_even ? e.scale * 0x1p-8 : e.smallest.size)));
+        e.center = 0.5 * (around.low + around.high);
+        if (step > 0) // else a point is a shape
+            e.center = glm::round(e.center / step) * step;
+        return e;
+    }
+
+    /// The distance between numbers in single precision near x.
+    inline double single_step(double x) { return std::exp2(std::floor(std::log2(x)) - 23); }
+
+    /// A shape that single precision cannot resolve, and why.
+    struct unresolved_shape {
+        shape_place place;
+        std::string what;
+    };
+
+    /// The first shape that single precision cannot resolve where it is, or on a curved one, if there is any.
+    inline std::optional<unresolved_shape> unresolved_in(const scene_extent& e)
+    {
+        if (e.is_even)
+            return std::nullopt;
+        const auto largest = [](const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+        const auto found = [](const sized_shape& x, const std::string& where, double step, double steps) {
+            return unresolved_shape{x.place,
+                "is " + text_of(x.size) + " m large, and single precision has steps of " + text_of(step) + " m " + where
+                    + ": it resolves shapes from " + text_of(steps * step)
+                    + " m on there; make it larger, bring closer what is far apart, or leave one of them out"};
+        };
+        for (const auto& x : e.shapes) {
+            const double far = std::max(largest(x.box.low - e.center), largest(x.box.high - e.center));
+            if (const double step = single_step(far); x.size < 64 * step)
+                return found(x, text_of(far) + " m from " + e.smallest.place.text() + ", the smallest", step, 64);
+        }
+        for (const auto& ground : e.shapes) {
+            const double step = ground.round_size > 0 ? single_step(ground.round_size) : 0;
+            if (e.smallest.size >= 16 * step)
+                continue;
+            for (const auto& x : e.shapes) {
+                const bool meet = glm::all(glm::lessThanEqual(x.box.low, ground.box.high))
+                    && glm::all(glm::lessThanEqual(ground.box.low, x.box.high));
+                if (meet && x.size < 16 * step)
+                    return found(x, "on " + ground.place.text() + ", whose box it touches", step, 16);
+            }
+        }
+        return std::nullopt;
+    }
+
     inline constexpr const char* no_shape = "shapes: there is none; add one to see";
 
     /// Light goes straight on through meshes only, and textures need coordinates, which only they have.
@@ -316,8 +424,8 @@ namespace detail {
 
 /// Checks a whole scene. The reader of scene files checks each part and adds its line.
 /// \throws std::invalid_argument "part[index].member: what is wrong"; also for a scene without lights, or for bodies of
-///         one glass that overlap (meshes are not compared). Only a photon map needs a Lambertian shape (upload_scene,
-///         scene files).
+///         one glass that overlap (meshes are not compared), or a shape that single precision cannot resolve. Only a
+///         photon map needs a Lambertian shape (upload_scene, scene files).
 inline void check(const scene& s)
 {
     detail::check_all("materials", s.materials, s.materials);
@@ -330,6 +438,8 @@ inline void check(const scene& s)
     if (const auto pair = detail::overlapping_glass(s))
         throw std::invalid_argument((*pair)[1].text() + ": overlaps " + (*pair)[0].text()
             + ", and both are of one glass; move them apart, or give them different materials");
+    if (const auto bad = detail::unresolved_in(detail::extent_of(s)))
+        throw std::invalid_argument(bad->place.text() + ": " + bad->what);
     check(s.camera);
     check(s.render);
     if (s.paper) {

@@ -133,7 +133,7 @@ void receive(vec3 received, vec3 normal, uint inside)
 // The photon leaves into the media `inside`.
 void leave(Hit hit, vec3 d, vec3 normal, uint inside)
 {
-    vec3 start = ray_start(hit.position, hit.normal, d);
+    vec3 start = ray_start(hit, d);
     next_origin = vec4(start.x, start.y, start.z, normal.y);
     next_direction = vec4(d.x, d.y, d.z, inside_code(inside, normal.z));
 }

@@ -220,7 +220,7 @@ void pass_clear(Hit hit, vec3 d, vec3 share)
         point.w = -1.0f;
         return;
     }
-    vec3 beyond = ray_start(hit.position, hit.normal, d);
+    vec3 beyond = ray_start(hit, d);
     point = vec4(beyond.x, beyond.y, beyond.z, 0.0f);
     direction.w = float(hits);
     precise vec3 passed = vec3(throughput) * share;
@@ -248,8 +248,11 @@ Branch coat_branch(uint i, uint hits, Surface s)
 void end_on_base(Hit hit, Surface s, vec3 reflected)
 {
     vec3 p = hit.position;
+    precise float more = hit.round_share - scene(SCENE_SIZES).x;
     if (SMOOTH) // shadow rays start off the surface about its shading normal
-        p = ray_start(p, s.geometric, s.geometric);
+        p = ray_start(hit, s.geometric);
+    else if (more > 0.0f) // than the offset of shadow rays at any surface
+        p = ray_at(p, s.geometric, more);
     point = vec4(p.x, p.y, p.z, is_counted() ? point_code(uint(surface.w)) : -1.0f);
     throughput = vec4(reflected.x, reflected.y, reflected.z, throughput.w);
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
@@ -351,7 +354,7 @@ void scatter(uint i, Hit hit, Surface s, float met, uint behind)
         surface.x = scatter_pdf(s, l.direction);
         surface.y = 0.0f;
     }
-    vec3 start = ray_start(hit.position, hit.normal, l.direction);
+    vec3 start = ray_start(hit, l.direction);
     point = vec4(start.x, start.y, start.z, 0.0f);
     direction = vec4(l.direction.x, l.direction.y, l.direction.z, float(hits + 1u));
     if (has_rebounds(s.material)) {

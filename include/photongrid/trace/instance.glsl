@@ -6,7 +6,8 @@
 //     where the surface's origin is in the scene, m;                  w: the pair and child that it is below
 //     the lowest corner of its box in the scene, m;                   w: its first face (trace/mesh_surface.glsl)
 //     the highest one;                                                w: what stands in w of its faces
-//     three rows of the matrix from the surface to the scene;         w of the first: IN_PLACE, MIRRORED, or 0
+//     three rows of the matrix from the surface to the scene;         w: IN_PLACE, MIRRORED, or 0; bits of a float,
+//         what ray_offset adds for it, m; 0
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint INSTANCE_RECORDS = 9u;

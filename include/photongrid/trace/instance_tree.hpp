@@ -36,6 +36,13 @@ namespace detail {
         return size(linear) * size(glm::inverse(linear)) / 3;
     }
 
+    /// A bound of the rounding error by which rays in a surface's space and hits in the scene differ, m: 64 units of
+    /// 2^-24 of the surface's size in the scene.
+    inline double rounding_of_placing(const glm::dmat3& linear, const glm::dvec3& size)
+    {
+        return (size.x + size.y + size.z) * stretch_of(linear) * 0x1p-18;
+    }
+
     class instance_tree_builder {
         static constexpr std::size_t most_placements = std::size_t{1} << 24;
 
@@ -88,6 +95,7 @@ namespace detail {
             links_.assign(placements_.size(), 0);
             number_leaves(tree);
             tree.corners.clear();
+            tree.planes.clear();
 
             tree_limits limits = limits_;
             limits.deepest -= tree.depth + 1;
@@ -136,6 +144,16 @@ namespace detail {
             }
             return b;
         }
+        /// rounding_of_placing, for rays.
+        float rounding_of(const placement& p) const
+        {
+            tree_box all;
+            for (const tree_box& part : boxes_within_[p.surface])
+                all.add(part);
+            const glm::dvec3 far(glm::max(glm::abs(all.low), glm::abs(all.high)));
+            return static_cast<float>(rounding_of_placing(p.linear,
+                glm::abs(p.linear[0]) * far.x + glm::abs(p.linear[1]) * far.y + glm::abs(p.linear[2]) * far.z));
+        }
         /// Makes boxes larger by more than what hits in a surface's space and in the scene differ by, of rays from ten
         /// times as far away as the scene is large.
         void enlarge(std::vector<tree_box>& boxes) const
@@ -175,6 +193,7 @@ namespace detail {
         {
             const auto first = static_cast<uint>(tree.corners.size() / kernels::TRIANGLE_RECORDS);
             tree.corners.insert(tree.corners.end(), below.corners.begin(), below.corners.end());
+            tree.planes.insert(tree.planes.end(), below.planes.begin(), below.planes.end());
             const auto at = tree.pairs.size();
             tree.pairs.insert(tree.pairs.end(), below.pairs.begin(), below.pairs.end());
             const auto moved = [&](uint child) { return child + (kernels::is_leaf(child) ? first : root); };
@@ -205,7 +224,7 @@ namespace detail {
                 put(boxes[i].high, p.face_code);
                 const bool mirrored = glm::determinant(p.linear) < 0;
                 put(row(p.linear, 0), p.is_in_place ? kernels::IN_PLACE : mirrored ? kernels::MIRRORED : 0u);
-                put(row(p.linear, 1), 0);
+                put(row(p.linear, 1), std::bit_cast<uint>(p.is_in_place ? 0.0f : rounding_of(p)));
                 put(row(p.linear, 2), 0);
                 id += surfaces_[p.surface].triangles.size();
                 pair += sizes[p.surface];

@@ -71,6 +71,7 @@ Hit intersect_closest(vec3 o, vec3 d)
     hit.position = ray_at(o, d, c.t);
     hit.normal = vec3(0.0f, 0.0f, 1.0f);
     hit.shading = hit.normal;
+    hit.round_share = scene(SCENE_SIZES).x;
     if (SPHERES && c.kind == SPHERE)
         hit = sphere_surface(c.at, hit);
     if (QUADRICS && c.kind == QUADRIC)
@@ -141,9 +142,9 @@ bool occluded(vec3 o, vec3 d, float far, Candidates c)
     return false;
 }
 
-// The origin of a ray that leaves the surface at p in direction d: offset from the surface to the side of d.
-vec3 ray_start(vec3 p, vec3 normal, vec3 d)
+// The origin of a ray that leaves a hit in direction d: offset from the surface to the side of d.
+vec3 ray_start(Hit hit, vec3 d)
 {
-    float off = ray_offset(p, scene(SCENE_SIZES).x);
-    return ray_at(p, normal, dot3(normal, d) >= 0.0f ? off : -off);
+    float off = ray_offset(hit.position, hit.round_share);
+    return ray_at(hit.position, hit.normal, dot3(hit.normal, d) >= 0.0f ? off : -off);
 }

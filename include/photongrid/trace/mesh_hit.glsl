@@ -26,6 +26,9 @@ Hit mesh_hit(uint number)
         hit.material = uint(normal.w);
     hit.position = vec3(place);
     hit.normal = vec3(normal);
-    hit.shading = vec3(mesh_shadings(number));
+    vec4 shading = mesh_shadings(number);
+    hit.shading = vec3(shading);
+    precise float round_share = scene(SCENE_SIZES).x + shading.w;
+    hit.round_share = round_share;
     return hit;
 }

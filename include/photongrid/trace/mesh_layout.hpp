@@ -37,9 +37,10 @@ namespace detail {
     class mesh_writer {
     public:
         /// `center` is subtracted from positions; `any_smooth`, `any_colored`: some mesh of the scene has normals,
-        /// colours or texture coordinates.
-        mesh_writer(mesh_layout& out, const dvec3& center, bool any_smooth, bool any_colored)
-            : out_(out), center_(center), any_smooth_(any_smooth), any_colored_(any_colored)
+        /// colours or texture coordinates. `longest`, m: edges that are longer, and more than four times as long as
+        /// they are far from the centre, are split, because rays at a triangle are rounded by its size.
+        mesh_writer(mesh_layout& out, const dvec3& center, bool any_smooth, bool any_colored, double longest)
+            : out_(out), center_(center), any_smooth_(any_smooth), any_colored_(any_colored), longest_(longest)
         {
         }
 
@@ -92,7 +93,7 @@ namespace detail {
             bounds b;
             for (const auto& p : m.surface->positions)
                 b.add(dvec3(p));
-            const dvec3 middle(glm::vec3(0.5 * (b.low + b.high)));
+            const dvec3 middle = dvec3(glm::vec3(0.5 * (b.low + b.high))) + m.surface->origin;
             write(out_.surfaces.emplace_back(), {"", m.surface, glm::dmat3(1), dvec3(0), 0}, middle, 0,
                 !m.surface->normals.empty());
             return middle;
@@ -130,13 +131,76 @@ namespace detail {
                     out_.attributes.emplace_back(m.surface->colors.empty() ? glm::vec3(1) : m.surface->colors[v], 0.0f);
                 }
             const bool mirrored = is_mirrored(m); // as corners_of(placed_mesh)
+            // Those of lights have shares of their area, and surfaces in several places have many triangles.
+            const bool splits = (code & kernels::FACE_OF_LIGHT) == 0 && &to == &out_.triangles;
+            middles_.clear();
             for (auto t : m.surface->triangles) {
                 if (mirrored)
                     std::swap(t.y, t.z);
-                to.triangles.push_back(t + first);
-                out_.faces.emplace_back(t + vertices, code);
-                write_plane(corners_of(to, to.triangles.size() - 1));
+                write_triangle(to, {t, first, vertices, code, splits});
             }
+        }
+
+        /// A triangle by the numbers of its corners in its mesh, whose first vertex is `first` of those that it is
+        /// written to, and `vertices` of all.
+        struct written_triangle {
+            glm::uvec3 corners;
+            uint first, vertices, code;
+            bool splits;
+        };
+        /// Writes a triangle, or if its longest edge is too long, both halves.
+        void write_triangle(mesh& to, const written_triangle& t)
+        {
+            double most = 0;
+            int longest = 0;
+            for (int side = 0; t.splits && side < 3; ++side) {
+                const double length
+                    = length_to_split(to, t.first + t.corners[side], t.first + t.corners[(side + 1) % 3]);
+                longest = length > most ? side : longest;
+                most = std::max(most, length);
+            }
+            if (most > 0) {
+                const uint a = t.corners[longest], b = t.corners[(longest + 1) % 3], c = t.corners[(longest + 2) % 3],
+                           middle = middle_of(to, t, a, b);
+                auto half = t;
+                half.corners = {a, middle, c};
+                write_triangle(to, half);
+                half.corners = {middle, b, c};
+                write_triangle(to, half);
+                return;
+            }
+            to.triangles.push_back(t.corners + t.first);
+            out_.faces.emplace_back(t.corners + t.vertices, t.code);
+            write_plane(corners_of(to, to.triangles.size() - 1));
+        }
+        /// The length of an edge that is too long, m; else 0. It is the same for both triangles at the edge.
+        double length_to_split(const mesh& m, uint from, uint to) const
+        {
+            const dvec3 a(m.positions[from]), edge = dvec3(m.positions[to]) - a;
+            const double length = glm::length(edge);
+            if (!(length > longest_))
+                return 0;
+            const double along = std::clamp(-glm::dot(a, edge) / (length * length), 0.0, 1.0);
+            return length > 4 * glm::length(a + along * edge) ? length : 0;
+        }
+        /// The number in its mesh of the vertex in the middle of an edge.
+        uint middle_of(mesh& to, const written_triangle& t, uint a, uint b)
+        {
+            const auto [found, is_new] = middles_.try_emplace(std::minmax(a, b));
+            if (!is_new)
+                return found->second;
+            found->second = static_cast<uint>(to.positions.size()) - t.first;
+            ++vertices_;
+            const auto mean = [](auto& all, std::size_t i, std::size_t j) {
+                const auto sum = all[i] + all[j];
+                all.push_back(0.5f * sum);
+            };
+            to.positions.emplace_back(0.5 * (dvec3(to.positions[t.first + a]) + dvec3(to.positions[t.first + b])));
+            if (any_smooth_)
+                mean(out_.normals, t.vertices + a, t.vertices + b);
+            for (std::size_t n = 0; any_colored_ && n < 2; ++n)
+                mean(out_.attributes, 2 * std::size_t{t.vertices + a} + n, 2 * std::size_t{t.vertices + b} + n);
+            return found->second;
         }
 
         /// The plane of a triangle as it is in single precision. A triangle without area has that of any that contains
@@ -159,7 +223,9 @@ namespace detail {
         mesh_layout& out_;
         dvec3 center_;
         bool any_smooth_, any_colored_;
-        uint vertices_ = 0; ///< written so far
+        double longest_;
+        uint vertices_ = 0;                             ///< written so far
+        std::map<std::pair<uint, uint>, uint> middles_; ///< of edges of the mesh that is being written
     };
 } // namespace detail
 

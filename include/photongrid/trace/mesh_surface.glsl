@@ -22,7 +22,9 @@ INPUT(7, vec4, normals)    // of each vertex, xyz, of any length; only with SMOO
 INPUT(8, uvec4, instances) // see instance.glsl; only with INSTANCES
 OUTPUT(0, vec4, place)     // xyz: of the hit, m; w: its distance; -1: no hit
 OUTPUT(1, vec4, normal)    // xyz: geometric normal, unit; w: material, or of a light its number, times -1, less 1
-OUTPUT(2, vec4, shading)   // xyz: interpolated normal, unit, on the side of the geometric one; without normals that
+// xyz: interpolated normal, unit, on the side of the geometric one, or without normals that; w: what ray_offset adds
+// for this hit, m
+OUTPUT(2, vec4, shading)
 
 #include <photongrid/trace/intersect/plane.glsl>
 #include <photongrid/trace/placed_face.glsl>
@@ -32,25 +34,37 @@ OUTPUT(2, vec4, shading)   // xyz: interpolated normal, unit, on the side of the
 struct Weighted {
     vec3 weights;
     vec3 point;
+    float round_share; // of the triangle, m: see ray_offset
 };
 
-// Moves a point of a triangle off its edges, by the offset of rays or a quarter of the triangle's height. Where
-// surfaces meet at an edge, rays that leave the point then start on its side of the other surface.
-Weighted off_edges(vec3 p, PlacedFace f, vec3 n)
+// Moves a point of a triangle off its edges, by four offsets of rays or a quarter of the triangle's height. Where
+// surfaces meet at an edge, rays that leave the point then start on its side of the other surface, and surely inside of
+// the triangle (is_behind in trace/ray_tests.glsl).
+//
+// Far from edges a plane's rounding depends on the point's coordinates alone. Within 2^-10 of the longest edge of one,
+// the offset is at least 32 units of 2^-24 of that length, because corners are rounded by their distance from a ray.
+Weighted off_edges(vec3 p, PlacedFace f, vec3 n, float round_share)
 {
     vec3 a = f.a;
     vec3 b = f.b;
     vec3 c = f.c;
-    float off = ray_offset(p, scene(SCENE_SIZES).x);
+    float offset = ray_offset(p, round_share);
     Weighted at;
     at.weights = triangle_weights(p, a, b, c, n);
     at.point = p;
+    at.round_share = 0.0f;
     precise vec3 opposite_a = c - b;
     precise vec3 opposite_b = a - c;
     precise vec3 opposite_c = b - a;
-    precise vec3 least = vec3(sqrt(dot3(opposite_a, opposite_a)), sqrt(dot3(opposite_b, opposite_b)),
-                             sqrt(dot3(opposite_c, opposite_c)))
-        * off;
+    precise vec3 lengths = vec3(sqrt(dot3(opposite_a, opposite_a)), sqrt(dot3(opposite_b, opposite_b)),
+        sqrt(dot3(opposite_c, opposite_c)));
+    float longest = largest3(lengths);
+    precise float more = longest * 1.9073486e-6f - offset; // 2^-19
+    precise vec3 close = lengths * (longest * 9.765625e-4f); // 2^-10
+    if (more > 0.0f && (at.weights.x < close.x || at.weights.y < close.y || at.weights.z < close.z))
+        at.round_share = more;
+    precise float off = offset + at.round_share;
+    precise vec3 least = lengths * (4.0f * off);
     precise float quarter = 0.25f * dot3(cross3(opposite_c, -opposite_b), n);
     least = vec3(min(least.x, quarter), min(least.y, quarter), min(least.z, quarter));
     if (!(quarter > 0.0f)) {
@@ -95,15 +109,20 @@ void kernel(uint i)
         plane = vec4(n.x, n.y, n.z, dot3(n, f.a));
     }
     float t = distance_of_hit(found);
-    Weighted at = off_edges(ray_at(vec3(origins(i)), vec3(directions(i)), t), f, vec3(plane));
+    float of_placing = 0.0f;
+    if (INSTANCES && f.instance != NO_INSTANCE)
+        of_placing = uintBitsToFloat(instances(INSTANCE_RECORDS * f.instance + 7u).w);
+    precise float round_share = scene(SCENE_SIZES).x + of_placing;
+    Weighted at = off_edges(ray_at(vec3(origins(i)), vec3(directions(i)), t), f, vec3(plane), round_share);
+    precise float more = of_placing + at.round_share;
     vec3 p = onto_plane(plane, at.point);
     place = vec4(p.x, p.y, p.z, t);
     bool of_light = f.face.w >= FACE_OF_LIGHT;
     float code = of_light ? -1.0f - float(f.face.w - FACE_OF_LIGHT) : float(f.face.w >> 1u);
     normal = vec4(plane.x, plane.y, plane.z, code);
-    shading = normal;
+    shading = vec4(plane.x, plane.y, plane.z, more);
     if (SMOOTH && !of_light && (f.face.w & 1u) != 0u) {
         vec3 n = shading_normal(f, at.weights, vec3(plane));
-        shading = vec4(n.x, n.y, n.z, 0.0f);
+        shading = vec4(n.x, n.y, n.z, more);
     }
 }

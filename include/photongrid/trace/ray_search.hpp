@@ -33,6 +33,7 @@ template <backend B>
 struct device_triangles {
     buffer_of<B, glm::uvec4> pairs;     ///< see trace/tree_node.glsl
     buffer_of<B, glm::uvec4> corners;   ///< of the triangles, in the order of the leaves
+    buffer_of<B, glm::vec4> planes;     ///< of the triangles, in the same order
     buffer_of<B, glm::uvec4> instances; ///< see trace/instance.glsl; one element if there are none
 
     uint instance_count() const { return static_cast<uint>(instances.size() / kernels::INSTANCE_RECORDS); }
@@ -57,7 +58,8 @@ triangle_tree build_instance_tree(B&, std::span<const mesh> surfaces, std::span<
 template <backend B>
 device_triangles<B> upload_triangles(B& device, const triangle_tree& tree)
 {
-    return {upload(device, tree.pairs), upload(device, tree.corners), detail::upload_some(device, tree.instances)};
+    return {upload(device, tree.pairs), upload(device, tree.corners), detail::upload_some(device, tree.planes),
+        detail::upload_some(device, tree.instances)};
 }
 
 /// Which hit of a ray is sought.
@@ -143,8 +145,9 @@ progress ray_search<B>::advance(uint passes)
     progress p = device_->template run_until_done<kernels::trace_ray>(
         {states_.size(), 0u, this->template switches<kernels::trace_ray>()},
         {.steps = settings_.steps_per_pass, .count = triangles_->instance_count()},
-        reads(*origins_, *directions_, triangles_->pairs, triangles_->corners, triangles_->instances), writes(states_),
-        passes);
+        reads(
+            *origins_, *directions_, triangles_->pairs, triangles_->corners, triangles_->instances, triangles_->planes),
+        writes(states_), passes);
     passes_ += p.passes;
     finished_ = p.finished;
     return p;

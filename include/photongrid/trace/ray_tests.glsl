@@ -3,6 +3,7 @@
 
 struct Ray {
     vec3 origin;
+    vec3 direction;
     vec3 inverse; // of the components of its direction, at most 10^30
     // Shear along the ray: with these as axes, the ray is the third axis, and a point's third coordinate is its
     // distance along the ray, in lengths of the direction.
@@ -25,6 +26,7 @@ inline Ray ray_of(vec3 o, vec3 d)
 {
     Ray r;
     r.origin = o;
+    r.direction = d;
     r.inverse = vec3(bounded_inverse(d.x), bounded_inverse(d.y), bounded_inverse(d.z));
     float x = abs(d.x);
     float y = abs(d.y);
@@ -137,6 +139,44 @@ inline float hit_triangle(vec3 a, vec3 b, vec3 c, Ray r)
     t = t > inside.x ? t : inside.x;
     t = t < inside.y ? t : inside.y;
     return t;
+}
+
+// Whether p is surely on the inner side of a triangle's edge; `n`: the triangle's normal; `off`: how far rounding may
+// have moved p along each axis.
+inline bool is_inside_edge(vec3 p, vec3 from, vec3 to, vec3 n, vec3 off)
+{
+    precise vec3 edge = to - from;
+    precise vec3 way = p - from;
+    precise vec3 inward
+        = vec3(n.y * edge.z - n.z * edge.y, n.z * edge.x - n.x * edge.z, n.x * edge.y - n.y * edge.x);
+    vec3 m = abs(n);
+    vec3 e = abs(edge);
+    precise vec3 terms = vec3(m.y * e.z + m.z * e.y, m.z * e.x + m.x * e.z, m.x * e.y + m.y * e.x);
+    float share = 4.7683716e-7f; // 8 units of 2^-24, of which `inward` has 4
+    precise vec3 rounding = abs(way) * share + off;
+    return on_axis(inward, way) > on_axis(terms, rounding);
+}
+
+// Whether a hit by hit_triangle() is none, since the triangle is behind the ray: the ray surely starts on one side of
+// the triangle's plane and leads away from it, and its line surely passes through the triangle. So rays that leave a
+// surface do not hit it again, however large it is beside their distance from it. Where rounding leaves an edge open,
+// the hit stays, because the triangle beyond that edge may have been left out for it.
+//
+// The bounds are, in units of 2^-24: of the height above the plane 4, and 5 happen, of which one is the plane's; of the
+// ray's slope the same.
+inline bool is_behind(vec4 plane, vec3 a, vec3 b, vec3 c, Ray r)
+{
+    vec3 n = vec3(plane);
+    precise float height = on_axis(n, r.origin) - plane.w;
+    precise float least_height = (on_axis(abs(n), abs(r.origin)) + abs(plane.w)) * 2.3841858e-7f; // 2^-22
+    float slope = on_axis(n, r.direction);
+    precise float least_slope = on_axis(abs(n), abs(r.direction)) * 2.3841858e-7f;
+    if (!(height > least_height && slope > least_slope) && !(height < -least_height && slope < -least_slope))
+        return false;
+    precise vec3 p = r.origin - r.direction * (height / slope); // in the plane
+    float share = 1.1920929e-7f; // 2^-23
+    precise vec3 off = abs(r.direction) * (least_height / abs(slope)) + abs(p) * share;
+    return is_inside_edge(p, a, b, n, off) && is_inside_edge(p, b, c, n, off) && is_inside_edge(p, c, a, n, off);
 }
 
 #endif

@@ -38,7 +38,7 @@ void kernel(uint i)
     vec3 end = vec3(points(ray));
     float side = args.behind != 0u ? -1.0f : 1.0f;
     // Shadow rays start off the surface about its shading normal, and from this point.
-    vec3 p = ray_at(end, e.geometric, side * ray_offset(end, scene(SCENE_SIZES).x));
+    vec3 p = ray_at(end, e.geometric, side * ray_offset(end, scene(SCENE_SIZES).z));
     uint inside = 0u;
     if (MEDIA) {
         Crossing c = crossing_at(ray, e);

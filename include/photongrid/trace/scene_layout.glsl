@@ -5,7 +5,9 @@
 const uint SCENE_TABLES = 32u;
 // No kind of shape has the numbers 4 to 7, 9 to 23 or 25, other SWITCHes (scene_feature).
 const uint MATERIAL_TABLE = 4u;
-const uint SCENE_SIZES = 5u;    // x: what ray_offset adds for curved shapes, m
+// What ray_offset adds, m. x: at any hit; y: for each metre of the size with which rounding at a hit grows, in scenes
+// where x is not enough for all shapes, else 0; z: at the ends of eye rays on rough surfaces.
+const uint SCENE_SIZES = 5u;
 const uint LIGHT_TABLE = 6u;    // see trace/light_record.glsl
 const uint TEXTURE_TABLE = 7u; // of the materials that have one; see trace/mesh_color.glsl
 // Two records per node (trace/light_tree.hpp): its ball; power, left, right. w of the table's record: how many lights
@@ -81,11 +83,19 @@ struct Hit {
     vec3 position;
     vec3 normal;    // geometric, unit; outward, or as the shape defines it
     vec3 shading;   // of a mesh with vertex normals (SMOOTH): the interpolated normal, unit, on the side of `normal`
+    float round_share; // of rays that leave it: see ray_offset
 };
 
+// What ray_offset adds at a hit whose rounding grows with `size`, m. `sizes`: the record SCENE_SIZES.
+inline float round_share_of(vec4 sizes, float size)
+{
+    precise float share = sizes.x + sizes.y * size;
+    return share;
+}
+
 // The distance by which a ray's origin is offset from its surface: a bound on the rounding error of their distance. It
-// is 32 units in the last place of the sum of the coordinates, plus `round_share`, 32 units of the size of the scene's
-// largest curved shape (SCENE_SIZES).
+// is 32 units in the last place of the sum of the coordinates, plus `round_share`: 32 units of the size of the scene's
+// largest curved shape, or, in scenes of very different sizes, of the one that is hit (SCENE_SIZES).
 inline float ray_offset(vec3 p, float round_share)
 {
     precise float bound = (abs(p.x) + abs(p.y) + abs(p.z)) * 1.9073486328125e-6f + round_share;

@@ -6,6 +6,7 @@
 #include <photongrid/scene/scene.hpp>
 #include <photongrid/trace/coat_layout.hpp>
 #include <photongrid/trace/environment_layout.hpp>
+#include <photongrid/trace/instance_tree.hpp>
 #include <photongrid/trace/light_tree.hpp>
 #include <photongrid/trace/material_layout.hpp>
 #include <photongrid/trace/mesh_layout.hpp>
@@ -15,6 +16,7 @@
 #include <photongrid/trace/shape_tree.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -79,6 +81,7 @@ struct layout_sources {
         dvec3 center{0};
         uint features = 0;
         uint first_light = 0;
+        double longest_edge = 0; ///< that is not split, m
 
         bool operator==(const of_meshes&) const = default;
     };
@@ -114,23 +117,6 @@ struct scene_layout {
 };
 
 namespace detail {
-    /// \throws std::invalid_argument if a shape is so small, relative to the scene, that single precision cannot
-    ///         resolve it.
-    inline void require_resolvable(const scene& s, double scale)
-    {
-        const auto all = [&](const auto& list, auto kind) {
-            if constexpr (requires { kind.size(list[0]); })
-                for (std::size_t i = 0; i < list.size(); ++i)
-                    require(kind.size(list[i]) >= scale * 0x1p-18,
-                        std::string(kind.list) + '[' + std::to_string(i)
-                            + "]: is smaller than 2^-18 of the scene, which single precision cannot resolve; leave it "
-                              "out, or make the large shapes smaller");
-        };
-        for_each_shape(s, all);
-        for_each_light(s, all);
-        all(s.meshes, shape_kind<placed_mesh>{});
-    }
-
     /// \throws std::invalid_argument for more records than single precision can number, as tables do.
     inline void require_numbered(std::size_t records)
     {
@@ -182,10 +168,9 @@ namespace detail {
         scene_layout write()
         {
             measure();
-            record_writer w(out_.records, out_.center, scale_);
+            record_writer w(out_.records, out_.center, extent_.is_even ? extent_.scale : 0);
             out_.records.resize(kernels::SCENE_TABLES, glm::vec4(0));
-            out_.records[kernels::SCENE_SIZES].x
-                = static_cast<float>(std::max(round_size_ * 0x1p-19, scale_ * 0x1p-26));
+            out_.records[kernels::SCENE_SIZES] = offset_shares();
             write_materials(w);
             write_shapes(w);
             write_shape_tree(w);
@@ -200,6 +185,18 @@ namespace detail {
         }
 
     private:
+        /// See SCENE_SIZES.
+        glm::vec4 offset_shares() const
+        {
+            const double scale = extent_.scale, of_rough = of_rough_instances_;
+            if (extent_.is_even) {
+                const double any = std::max(round_size_ * 0x1p-19, scale * 0x1p-26);
+                return glm::vec4(glm::dvec4(any, 0, any + of_rough, 0));
+            }
+            const double any = extent_.smallest.size * 0x1p-16;
+            return glm::vec4(glm::dvec4(any, 0x1p-20, any + std::max(of_rough, rough_size_ * 0x1p-20), 0));
+        }
+
         uint features_of(const material& m)
         {
             uint features = entry_of(m.kind).switches | (is_clear(m) ? has_clear : 0u);
@@ -224,39 +221,42 @@ namespace detail {
         /// Computes the bounds, the centre and the features.
         void measure()
         {
-            bounds all, diffuse;
+            extent_ = extent_of(s_);
+            bounds diffuse;
             for_each_shape(s_, [&](const auto& list, auto kind) {
                 for (const auto& x : list) {
                     const auto& m = s_.materials[x.material];
-                    kind.add_bounds(all, x);
                     if (is_diffuse(s_.materials, m))
                         kind.add_bounds(diffuse, x);
                     out_.features |= features_of(m);
                     round_size_ = std::max(round_size_, kind.round_size(x));
+                    if ((features_of(m) & has_rough) != 0)
+                        rough_size_ = std::max(rough_size_, kind.round_size(x));
                     out_.steps_per_ray += steps_of(kind, x);
                 }
                 out_.features |= list.empty() ? 0u : 1u << kind.number;
             });
-            for (const auto& m : s_.meshes) {
+            for (std::size_t i = 0; i < s_.meshes.size(); ++i) {
+                const auto& m = s_.meshes[i];
                 const auto& of = s_.materials[m.material];
-                bounds box; // once: there may be thousands of meshes of thousands of triangles
-                shape_kind<placed_mesh>::add_bounds(box, m);
-                all.add(box);
+                const bounds& box = extent_.meshes[i];
                 if (is_diffuse(s_.materials, of))
                     diffuse.add(box);
                 out_.features |= has_meshes | features_of(of);
                 out_.features |= m.surface->normals.empty() ? 0u : has_smooth_meshes;
                 out_.features |= shared_.holds(m) ? has_instances : 0u;
+                if (shared_.holds(m) && (features_of(of) & has_rough) != 0)
+                    of_rough_instances_
+                        = std::max(of_rough_instances_, rounding_of_placing(m.linear, box.high - box.low));
                 out_.features |= m.surface->colors.empty() && !has_texture(s_.materials, of) ? 0u : has_textures;
             }
             out_.features |= media_.media().empty() ? 0u : has_media;
-            require(!all.empty(), no_shape);
+            require(count_shapes(s_) > 0, no_shape);
             out_.is_matte = !diffuse.empty();
             if (!out_.is_matte)
-                diffuse = all; // of which nothing is seen
+                diffuse = extent_.all; // of which nothing is seen
             for_each_light(s_, [&](const auto& list, auto kind) {
                 for (const auto& l : list) {
-                    kind.add_bounds(all, l);
                     if constexpr (requires { surface_of(l); }) {
                         const auto surface = surface_of(l);
                         const shape_kind<std::remove_cvref_t<decltype(surface)>> of;
@@ -268,11 +268,7 @@ namespace detail {
             });
             // Of loops over kinds, lights and faces, the corners of a lamp, and a last round of each loop: about 20.
             out_.steps_per_ray += 32;
-            scale_ = 0.5 * glm::length(all.high - all.low);
-            require_resolvable(s_, scale_);
-            // The centre, rounded to few bits, so that adding it to the anchor is exact.
-            const double step = std::exp2(std::floor(std::log2(scale_)) - 8);
-            out_.center = glm::round(0.5 * (all.low + all.high) / step) * step;
+            out_.center = extent_.center;
             out_.low = glm::vec3(diffuse.low - out_.center);
             out_.high = glm::vec3(diffuse.high - out_.center);
         }
@@ -334,7 +330,7 @@ namespace detail {
         {
             bounds b;
             kind.add_bounds(b, x);
-            const dvec3 margin(scale_ * 0x1p-17);
+            const dvec3 margin(extent_.scale * 0x1p-17);
             shapes_.push_back(
                 {{glm::vec3(b.low - out_.center - margin), glm::vec3(b.high - out_.center + margin)}, kind.number, at});
         }
@@ -346,7 +342,7 @@ namespace detail {
                 return;
             out_.features |= has_shape_tree;
             const std::size_t lamps = s_.rectangle_lights.size(); // the last shapes
-            const bool apart = lamps_block_none(s_.rectangle_lights, scale_ * 0x1p-26);
+            const bool apart = lamps_block_none(s_.rectangle_lights, extent_.scale * 0x1p-26);
             const auto nodes = build_shape_tree(shapes_, apart ? lamps : 0);
             out_.steps_per_ray += nodes.size();
             enter(kernels::SHAPE_TREE, w.next(), nodes.size(), 2);
@@ -370,12 +366,13 @@ namespace detail {
             });
             auto& from = out_.sources.meshes;
             from = {s_.meshes, s_.mesh_lights, out_.center, out_.features & (has_smooth_meshes | has_textures),
-                static_cast<uint>(light)};
+                static_cast<uint>(light),
+                extent_.is_even ? std::numeric_limits<double>::infinity() : extent_.smallest.size * 0x1p12};
             out_.shares_meshes = before_ != nullptr && before_->meshes == from;
             if (out_.shares_meshes)
                 return;
             mesh_writer w(out_.meshes, out_.center, (out_.features & has_smooth_meshes) != 0,
-                (out_.features & has_textures) != 0);
+                (out_.features & has_textures) != 0, from.longest_edge);
             w.write_all(s_, shared_, from.first_light);
         }
 
@@ -464,8 +461,10 @@ namespace detail {
         scene_layout out_;
         std::vector<boxed_shape> shapes_;
         bool is_smooth_ = false; ///< a surface that reflects or refracts is smooth
-        double scale_ = 0;       ///< half the scene's diagonal, m
-        double round_size_ = 0;  ///< the largest shape_kind::round_size, m
+        scene_extent extent_;
+        double round_size_ = 0;         ///< the largest shape_kind::round_size, m
+        double rough_size_ = 0;         ///< of rough shapes
+        double of_rough_instances_ = 0; ///< what ray_offset adds for rough surfaces in several places, m
     };
 } // namespace detail
 

@@ -76,7 +76,7 @@ void kernel(uint i)
     arriving = vec4(left.x, left.y, left.z, arriving.w);
     vec3 d = vec3(directions(i));
     float side = dot3(hit.normal, d) > 0.0f ? 1.0f : -1.0f;
-    vec3 beyond = ray_at(hit.position, hit.normal, side * ray_offset(hit.position, scene(SCENE_SIZES).x));
+    vec3 beyond = ray_at(hit.position, hit.normal, side * ray_offset(hit.position, hit.round_share));
     precise float rest = origin.w - dot3(beyond - vec3(origin), d);
     origin = vec4(beyond.x, beyond.y, beyond.z, largest3(passes) > 0.0f && rest > 0.0f ? rest : 0.0f);
 }

@@ -22,6 +22,7 @@ INPUT(1, vec4, directions) // xyz
 INPUT(2, uvec4, pairs)     // see tree_node.glsl
 INPUT(3, uvec4, corners)
 INPUT(4, uvec4, instances) // see instance.glsl
+INPUT(5, vec4, planes)     // see tree_node.glsl
 STATE(0, uvec4, state)     // see ray_state.glsl
 
 #include <photongrid/trace/find_instance.glsl>
@@ -75,12 +76,15 @@ struct TriangleHit {
 TriangleHit closest_of_leaf(TriangleHit so_far, uint leaf, Ray r, vec2 inside, uint first_id)
 {
     for (uint n = first_of_leaf(leaf); n < past_leaf(leaf); ++n) {
-        uvec4 a = corners(TRIANGLE_RECORDS * n);
-        float t = hit_triangle(corner_of(a), corner_of(corners(TRIANGLE_RECORDS * n + 1u)),
-            corner_of(corners(TRIANGLE_RECORDS * n + 2u)), r);
-        uint id = first_id + a.w;
+        uvec4 first = corners(TRIANGLE_RECORDS * n);
+        vec3 a = corner_of(first);
+        vec3 b = corner_of(corners(TRIANGLE_RECORDS * n + 1u));
+        vec3 c = corner_of(corners(TRIANGLE_RECORDS * n + 2u));
+        float t = hit_triangle(a, b, c, r);
+        uint id = first_id + first.w;
         bool counts = !INSTANCES || (t >= inside.x && t <= inside.y);
-        if (counts && t >= 1.17549435e-38f && (t < so_far.t || (t == so_far.t && id < so_far.triangle))) {
+        if (counts && t >= 1.17549435e-38f && (t < so_far.t || (t == so_far.t && id < so_far.triangle))
+            && !is_behind(planes(n), a, b, c, r)) {
             so_far.t = t;
             so_far.triangle = id;
         }

@@ -4,7 +4,8 @@
 //     xyz: highest corner;                                            w: the second child
 //     xyz: lowest corner of the second child's box;                   w: the pair and child that this pair is below
 //     xyz: highest corner
-// A child is a pair or a leaf: up to eight consecutive triangles, each three elements of another buffer, its corners.
+// A child is a pair or a leaf: up to eight consecutive triangles, each three elements of another buffer, its corners,
+// and one of a third, its plane: xyz: unit normal; w: offset; all 0 of a triangle too thin to have one.
 #ifndef PHOTONGRID_INSIDE_KERNEL_STRUCT // core/begin.hpp
 
 const uint PAIR_RECORDS = 4u;

@@ -26,12 +26,25 @@ namespace photongrid {
 struct triangle_tree {
     std::vector<glm::uvec4> pairs;   ///< of nodes
     std::vector<glm::uvec4> corners; ///< of the triangles, in the order of the leaves
+    std::vector<glm::vec4> planes;   ///< of the triangles, in the same order
     uint depth = 0;                  ///< of the deepest pair; the first has 0
     std::vector<glm::uvec4>
         instances{}; ///< of a tree of two levels (instance_tree.hpp), as trace/instance.glsl has them
 };
 
 namespace detail {
+    /// The plane of a triangle, rounded from double precision: its unit normal, its offset. 0 if the triangle is so
+    /// thin that rounding in double precision may tilt its plane by more than in single precision.
+    inline glm::vec4 plane_of(const std::array<glm::vec3, 3>& corners)
+    {
+        const glm::dvec3 a(corners[0]), ab = glm::dvec3(corners[1]) - a, ac = glm::dvec3(corners[2]) - a,
+                                        n = glm::cross(ab, ac);
+        const double size = glm::length(n);
+        if (!(size > 0x1p-28 * glm::length(ab) * glm::length(ac)))
+            return glm::vec4(0);
+        return {glm::vec3(n / size), static_cast<float>(glm::dot(n, a) / size)};
+    }
+
     /// Builds a triangle_tree. The same mesh gives the same tree on every machine, with any number of threads.
     class tree_builder {
     public:
@@ -56,9 +69,10 @@ namespace detail {
             std::vector<grower> below(pieces.size(), grower{by});
             triangle_tree tree;
             run(pieces.size() + 1, [&](std::size_t i) {
-                if (i == 0)
-                    tree.corners.resize(n * kernels::TRIANGLE_RECORDS); // much new memory, which takes its time
-                else
+                if (i == 0) { // much new memory, which takes its time
+                    tree.corners.resize(n * kernels::TRIANGLE_RECORDS);
+                    tree.planes.resize(n);
+                } else
                     pieces[i - 1].root = below[i - 1].grow(pieces[i - 1].of, pieces[i - 1].depth);
             });
             tree.pairs = std::move(top.pairs);
@@ -77,6 +91,7 @@ namespace detail {
                     const auto corners = corners_of(mesh_, triangle);
                     for (std::size_t c = 0; c < 3; ++c)
                         tree.corners[t * kernels::TRIANGLE_RECORDS + c] = bits_of(corners[c], c == 0 ? triangle : 0);
+                    tree.planes[t] = plane_of(corners);
                 }
             });
             return tree;

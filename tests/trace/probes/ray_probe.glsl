@@ -24,7 +24,7 @@ void kernel(uint i)
     Hit hit = intersect_closest(o, d);
     place = vec4(hit.position.x, hit.position.y, hit.position.z, hit.t);
     facing = vec4(hit.normal.x, hit.normal.y, hit.normal.z, hit.material == NO_MATERIAL ? -1.0f : float(hit.material));
-    vec3 s = ray_start(hit.position, hit.normal, vec3(leavings(i)));
+    vec3 s = ray_start(hit, vec3(leavings(i)));
     float far = leavings(i).w > 0.0f ? leavings(i).w : 3.0e38f;
     start = vec4(s.x, s.y, s.z, occluded(o, d, far, everything()) ? 1.0f : 0.0f);
 }

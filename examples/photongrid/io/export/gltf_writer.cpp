@@ -189,7 +189,8 @@ namespace gltf_export {
             void add_placed(const placed_mesh& m, const std::string& name, std::size_t material)
             {
                 const bool as_node = is_scaled_rotation(m.linear);
-                auto node = as_node ? node_at(m.linear, m.offset) : json::object();
+                auto node
+                    = as_node ? node_at(m.linear, place_of(m, glm::vec3(0))) : node_at(glm::dmat3(1), apart_of(m));
                 json placed;
                 if (!as_node)
                     placed = buffer_.add(placed_surface(m));
@@ -198,12 +199,17 @@ namespace gltf_export {
                 node["mesh"] = mesh_with(as_node ? surfaces_[m.surface] : placed, material);
                 add_node(std::move(node), name);
             }
+            /// The place from which placed_surface() measures: 0, unless the surface is far from it.
+            static dvec3 apart_of(const placed_mesh& m)
+            {
+                return m.surface->origin == dvec3(0) ? dvec3(0) : place_of(m, glm::vec3(0));
+            }
             /// The surface with its vertices where they are in the scene.
             static mesh placed_surface(const placed_mesh& m)
             {
                 auto made = *m.surface;
                 for (auto& p : made.positions)
-                    p = place_of(m, p);
+                    p = place_of(m, p) - apart_of(m);
                 for (auto& n : made.normals)
                     n = normal_of(m, n);
                 if (is_mirrored(m))

@@ -123,7 +123,15 @@ namespace pbrt_export {
                 if (has_file || m.triangles.size() >= small_mesh || !m.colors.empty()) {
                     to_.word("  Shape \"plymesh\"").parameter("string filename", files_.add_surface(surface));
                 } else {
-                    to_.word("  Shape \"trianglemesh\"").parameter("point3 P", std::span(m.positions));
+                    to_.word("  Shape \"trianglemesh\"");
+                    if (m.origin == dvec3(0)) {
+                        to_.parameter("point3 P", std::span(m.positions));
+                    } else {
+                        std::vector<dvec3> places;
+                        for (const auto& p : m.positions)
+                            places.push_back(m.origin + dvec3(p));
+                        to_.parameter("point3 P", std::span<const dvec3>(places));
+                    }
                     to_.parameter("integer indices", std::span(m.triangles));
                     if (!m.normals.empty())
                         to_.parameter("normal N", std::span(m.normals));

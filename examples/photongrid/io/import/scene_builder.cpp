@@ -138,12 +138,26 @@ scene_builder::placing scene_builder::place_in_scene(const source_place& place, 
     return {glm::dmat3(m), dvec3(m[3])};
 }
 
-placed_mesh scene_builder::placed(const source_place& place, std::shared_ptr<const mesh> surface,
-    const glm::dmat4& to_scene, const std::string& file) const
+placed_mesh scene_builder::placed(
+    const source_place& place, std::shared_ptr<const mesh> surface, const glm::dmat4& to_scene, const std::string& file)
 {
     const auto at = place_in_scene(place, to_scene);
     placed_mesh m{.file = file, .surface = std::move(surface), .linear = at.linear, .offset = at.offset};
     detail::check_at(place, m);
+    // Vertices that a file has in single precision.
+    const auto& s = *m.surface;
+    glm::vec3 low = s.positions[0], high = low;
+    for (const auto& p : s.positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const auto largest = [](const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+    const double far = static_cast<double>(std::max(largest(low), largest(high))),
+                 extent = static_cast<double>(largest(high - low));
+    if (far > 0 && 256 * detail::single_step(far) > extent)
+        log_.add(place,
+            "vertices " + detail::text_of(far) + " from 0 are in single precision, in steps of "
+                + detail::text_of(detail::single_step(far)) + ": write them in double, or closer to 0");
     return m;
 }
 
@@ -249,6 +263,9 @@ imported_scene scene_builder::finish()
     if (!has_camera_ && settings_.camera_from.empty())
         add_default_camera();
     choose_settings();
+    if (const auto bad = detail::unresolved_in(detail::extent_of(made_)))
+        fail_at(bad->place.list == shape_kind<sphere>::list ? sphere_places_[bad->place.index] : file_,
+            bad->place.text() + ": " + bad->what);
     if (const auto pair = detail::overlapping_glass(made_)) {
         const auto& second = (*pair)[1];
         fail_at(second.list == shape_kind<sphere>::list ? sphere_places_[second.index] : file_,

@@ -112,7 +112,7 @@ private:
     };
     placing place_in_scene(const source_place& place, const glm::dmat4& to_scene) const;
     placed_mesh placed(const source_place& place, std::shared_ptr<const mesh> surface, const glm::dmat4& to_scene,
-        const std::string& file) const;
+        const std::string& file);
     dvec3 point(const dvec3& p) const { return dvec3(world_ * glm::dvec4(p, 1)); }
     dvec3 direction(const dvec3& d) const { return glm::dmat3(world_) * d; }
     /// The factor on a round shape's lengths. 0: it is stretched, or its material is for meshes alone (a texture or an

@@ -52,6 +52,7 @@ namespace {
     std::shared_ptr<const mesh> both_sides(const mesh& m, double apart)
     {
         mesh made;
+        made.origin = m.origin;
         for (const auto& t : m.triangles) {
             const auto c
                 = std::array{glm::dvec3(m.positions[t.x]), glm::dvec3(m.positions[t.y]), glm::dvec3(m.positions[t.z])};

@@ -85,6 +85,7 @@ mesh disk_mesh(double height, double radius, double inner_radius, double angle)
 mesh with_corner_coordinates(const mesh& m, const std::array<glm::vec2, 3>& corners)
 {
     mesh made;
+    made.origin = m.origin;
     for (const auto& t : m.triangles) {
         for (int c = 0; c < 3; ++c) {
             made.positions.push_back(m.positions[t[c]]);

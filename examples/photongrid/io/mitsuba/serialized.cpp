@@ -119,7 +119,7 @@ namespace {
         const auto fill = [&](const auto& numbers) {
             all.resize(numbers.size() / n);
             for (std::size_t i = 0; i < numbers.size(); ++i)
-                all[i / n][static_cast<int>(i % n)] = static_cast<float>(numbers[i]);
+                all[i / n][static_cast<int>(i % n)] = static_cast<typename Vector::value_type>(numbers[i]);
         };
         if (is_double) {
             auto numbers = u.numbers<double>(count * n);
@@ -159,7 +159,10 @@ serialized_mesh parse_serialized(const std::string& file, std::string_view bytes
     const bool is_double = (flags & in_double_precision) != 0;
     serialized_mesh made{.surface = {}, .has_face_normals = (flags & with_face_normals) != 0};
     auto& m = made.surface;
-    m.positions = vectors<glm::vec3>(u, vertices, is_double);
+    if (is_double)
+        set_positions(m, vectors<glm::dvec3>(u, vertices, true));
+    else
+        m.positions = vectors<glm::vec3>(u, vertices, false);
     if (flags & with_normals)
         m.normals = vectors<glm::vec3>(u, vertices, is_double);
     if (flags & with_coordinates)

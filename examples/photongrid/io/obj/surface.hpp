@@ -41,7 +41,8 @@ struct skipped_statements {
 
 /// What an OBJ file says. All indices in it are valid.
 struct surface {
-    std::vector<glm::vec3> positions, colors, normals;
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::vec3> colors, normals;
     std::vector<glm::vec2> coordinates;
     std::vector<corner> corners;
     std::vector<std::uint32_t> face_starts; ///< the first corner of each face

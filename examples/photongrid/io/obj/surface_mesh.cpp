@@ -10,7 +10,7 @@ namespace {
     /// Newell's method.
     glm::dvec3 normal_of_face(const surface& s, std::size_t first, std::size_t past)
     {
-        const auto at = [&](std::size_t i) { return glm::dvec3(s.positions[s.corners[i][0]]); };
+        const auto at = [&](std::size_t i) { return s.positions[s.corners[i][0]]; };
         glm::dvec3 sum(0);
         for (std::size_t i = first; i < past; ++i)
             sum += glm::cross(at(i) - at(first), at(i + 1 < past ? i + 1 : first) - at(first));
@@ -87,9 +87,10 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter
         triangles += end - begin - 2 * (r.past - r.first);
     }
     mesh made;
+    std::vector<glm::dvec3> places;
     made.triangles.reserve(triangles);
     const auto add = [&](const corner& c, const glm::vec3& normal) {
-        made.positions.push_back(s.positions[c[0]]);
+        places.push_back(s.positions[c[0]]);
         if (has_coordinates)
             made.texture_coordinates.push_back(c[1] == absent ? glm::vec2(0) : s.coordinates[c[1]]);
         if (has_normals)
@@ -107,7 +108,7 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter
             std::optional<glm::vec3> of_plane; // which corners without a normal have, and share with no other face
             for (std::size_t i = begin; i < end; ++i) {
                 const auto& c = s.corners[i];
-                const auto next = static_cast<std::uint32_t>(made.positions.size());
+                const auto next = static_cast<std::uint32_t>(places.size());
                 if (has_normals && c[2] == absent) {
                     if (!of_plane)
                         of_plane = glm::vec3(normal_of_face(s, begin, end));
@@ -130,6 +131,7 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter
             for (std::size_t i = 2; i < face.size(); ++i)
                 made.triangles.emplace_back(face[0], face[i - 1], face[i]);
         }
+    set_positions(made, places);
     return made;
 }
 

@@ -89,7 +89,8 @@ namespace {
         void read_position()
         {
             constexpr auto expected = "a number: vertices have three, up to 10^18, then perhaps a colour";
-            made_.positions.push_back(three(1e18, expected));
+            const double x = at_.number(1e18, expected), y = at_.number(1e18, expected), z = at_.number(1e18, expected);
+            made_.positions.emplace_back(x, y, z);
             std::array<float, 4> more{};
             std::size_t n = 0;
             for (; n < more.size() && at_.find_word(); ++n)

@@ -41,7 +41,7 @@ namespace {
         std::vector<Vector> all(numbers.size() / n);
         for (std::size_t i = 0; i < all.size(); ++i)
             for (std::size_t c = 0; c < n; ++c)
-                all[i][static_cast<int>(c)] = static_cast<float>(numbers[i * n + c]);
+                all[i][static_cast<int>(c)] = static_cast<typename Vector::value_type>(numbers[i * n + c]);
         return all;
     }
 
@@ -65,7 +65,7 @@ namespace {
     {
         const auto& p = s.parameters;
         mesh m;
-        m.positions = vectors_of<glm::vec3>(p.numbers("P", {"point3", "point"}, 3));
+        set_positions(m, vectors_of<glm::dvec3>(p.numbers("P", {"point3", "point"}, 3)));
         m.normals = vectors_of<glm::vec3>(p.numbers("N", {"normal", "normal3"}, 3));
         const char* coordinates = p.find("st") != nullptr ? "st" : "uv";
         m.texture_coordinates = vectors_of<glm::vec2>(p.numbers(coordinates, {"point2", "float", "vector2"}, 2));
@@ -106,6 +106,7 @@ mesh shape_reader::bilinear_mesh(const shape_entity& s)
         indices = {0, 1, 2, 3};
     }
     mesh made;
+    made.origin = corners.origin;
     for (std::size_t i = 0; i < indices.size(); i += 4) {
         const auto corner = [&](const auto& all, std::size_t n) { return all[indices[i + n]]; };
         const std::array<glm::dvec3, 4> p{corner(corners.positions, 0), corner(corners.positions, 1),

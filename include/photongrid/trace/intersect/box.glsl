@@ -79,7 +79,10 @@ Hit box_surface(uint at, vec3 o, vec3 d, Hit hit)
     bool enters = p.enter > 0.0f;
     uint face = enters ? p.enter_axis : p.leave_axis;
     vec4 middle = scene(at + 3u);
-    float off = ray_offset(hit.position, scene(SCENE_SIZES).x);
+    precise vec3 from_middle = abs(hit.position - vec3(middle));
+    precise float size = from_middle.x + from_middle.y + from_middle.z;
+    hit.round_share = round_share_of(scene(SCENE_SIZES), size);
+    float off = ray_offset(hit.position, hit.round_share);
     for (uint axis = 0u; axis < 3u; ++axis) {
         vec4 a = scene(at + axis);
         precise vec3 f = hit.position - vec3(middle);

@@ -76,6 +76,8 @@ Hit quadric_surface(uint at, Hit hit)
     precise float newton = -0.5f * value / steepness;
     if (abs(value) < steepness)
         hit.position = ray_at(hit.position, n, newton);
+    precise float size = 2.0f * (abs(p.x) + abs(p.y) + base.w);
+    hit.round_share = round_share_of(scene(SCENE_SIZES), size);
     hit.material = uint(scene(at + 4u).x);
     return hit;
 }

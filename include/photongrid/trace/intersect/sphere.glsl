@@ -50,6 +50,7 @@ Hit sphere_surface(uint at, Hit hit)
     vec4 s = scene(at);
     hit.normal = normalized3(hit.position - vec3(s));
     hit.position = ray_at(vec3(s), hit.normal, s.w); // onto the surface
+    hit.round_share = round_share_of(scene(SCENE_SIZES), 2.0f * s.w);
     hit.material = uint(scene(at + 1u).x);
     if (scene(at + 1u).y > 0.0f) {
         hit.material = NO_MATERIAL;

@@ -3,9 +3,10 @@ SWITCH(12, SPHERE_LIGHTS)
 const uint SPHERE_LIGHT = 12u;
 
 // The distance of rays' ends from the surface, m.
-float sphere_light_offset(vec3 centre, float radius, float round_share)
+float sphere_light_offset(vec3 centre, float radius)
 {
-    return ray_offset(abs(centre) + vec3(radius, radius, radius), round_share);
+    return ray_offset(
+        abs(centre) + vec3(radius, radius, radius), round_share_of(scene(SCENE_SIZES), 2.0f * radius));
 }
 
 Emitted sphere_emit(uint at, Emitted e, vec4 r)
@@ -14,7 +15,7 @@ Emitted sphere_emit(uint at, Emitted e, vec4 r)
     vec3 normal = uniform_direction(r.z, r.w);
     float radius = scene(at + 2u).x;
     e.direction = cosine_direction(normal, r.x, r.y);
-    e.origin = ray_at(centre, normal, radius + sphere_light_offset(centre, radius, scene(SCENE_SIZES).x));
+    e.origin = ray_at(centre, normal, radius + sphere_light_offset(centre, radius));
     return e;
 }
 
@@ -44,7 +45,7 @@ ArrivingLight sphere_sample(uint at, ArrivingLight a, SampleNumbers n, LitPoint 
     precise float half_chord2 = radius * radius - distance2 * off_axis2;
     precise float t = dot3(d, to_centre) - sqrt(half_chord2 > 0.0f ? half_chord2 : 0.0f);
     vec3 normal = normalized3(ray_at(-to_centre, d, t));
-    float end_radius = radius + sphere_light_offset(centre, radius, lit.round_share);
+    float end_radius = radius + sphere_light_offset(centre, radius);
     precise float per_power = a.radiance_per_power * cosine * 6.28318531f * cone * n.share;
     a.found = lit_from(ray_at(centre, normal, end_radius), per_power, lit);
     return a;
