@@ -48,10 +48,13 @@
     EXTERN template void detail::direct_light(B&, const device_scene<B>&, const detail::ray_of_pixels&,                \
         const detail::eye_hits<B>&, buffer_of<B, glm::vec4>&);                                                         \
     EXTERN template class photon_tracing<B>;                                                                           \
+    EXTERN template void detail::mesh_rays<B>::find(B&, const device_scene<B>&, detail::mesh_hits<B>&) const;          \
     EXTERN template buffer_of<B, glm::vec4> covered_shares(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&, \
         const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, const disc_kind&);                             \
     EXTERN template disc_moments<B> covered_moments(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,        \
         const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, const disc_kind&);                             \
+    EXTERN template probed_discs<B> probe_discs(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,            \
+        const buffer_of<B, glm::vec4>&, const disc_probing&);                                                          \
     EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
         const buffer_of<B, glm::vec4>&, knn_estimates<B>&, const disc_kind&);                                          \
     EXTERN template class gather_map_building<B>;                                                                      \

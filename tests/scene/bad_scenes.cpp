@@ -386,6 +386,13 @@ namespace {
                     x.meshes[0].surface = std::make_shared<const mesh>(m);
                 },
                 "meshes[0].mesh: normals[0]"},
+            {"mesh far from anywhere",
+                [](scene& x) {
+                    auto m = *x.meshes[0].surface;
+                    m.origin.y = nan;
+                    x.meshes[0].surface = std::make_shared<const mesh>(m);
+                },
+                "meshes[0].mesh: origin"},
             {"mesh nowhere", [](scene& x) { x.meshes[2].offset.y = infinity; }, "meshes[2].matrix"},
             {"mesh scaled by 0", [](scene& x) { x.meshes[2].linear[1] = dvec3(0); }, "meshes[2].matrix"},
             {"light of no mesh", [](scene& x) { x.mesh_lights[0].surface.surface = nullptr; },
@@ -426,7 +433,11 @@ namespace {
                 "grid"},
             {"no pixels", [](scene& x) { x.render.output.width = 0; }, "size"},
             {"exposure", [](scene& x) { x.render.output.exposure = 65; }, "exposure"},
-            {"edge correction alone", [](scene& x) { x.render.estimate.edges = edge_correction::polygons; },
+            {"edge correction alone",
+                [](scene& x) {
+                    x.render.estimate.edges = edge_correction::polygons;
+                    x.render.estimate.leaks = {};
+                },
                 "edge_correction"},
             {"settings for the paper's method", [](scene& x) { x.paper.emplace().view.spp = 0; }, "paper: spp"},
         };
@@ -654,6 +665,8 @@ namespace {
         EXPECT_NO_THROW(check(s));
         s.estimate.leaks.min_cosine = 0;
         EXPECT_THROW(check(s), std::invalid_argument);
+        s.estimate.edges = edge_correction::probes; // without it they probe nothing
+        EXPECT_NO_THROW(check(s));
     }
 
 } // namespace

@@ -1,8 +1,8 @@
 // Where an eye ray ended on a rough surface (eye_bounce.glsl). Included by kernels after their INPUTs scene, points,
 // directions, throughputs, surfaces and emissions, and after core/natural_exp.glsl and trace/scatter.glsl.
+SWITCH(16, TEXTURES)
 #include <photongrid/trace/media.glsl>
 #include <photongrid/trace/end_code.glsl>
-SWITCH(16, TEXTURES)
 
 bool ended_on_rough(uint ray)
 {
