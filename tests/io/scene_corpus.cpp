@@ -67,12 +67,12 @@ namespace {
                  "photongrid/materials.json", "photongrid/rectangle_light.json", "photongrid/units_mm_kw.json",
                  "photongrid/units_cm_mw.json", "photongrid/every_setting.json", "photongrid/comments_and_schema.json",
                  "photongrid/byte_order_mark.json", "photongrid/crlf_and_tabs.json", "photongrid/glass_ball.json",
-                 "photongrid/ring.json", "photongrid/cornell_box.json", "photongrid/largest_and_smallest_lengths.json",
-                 "photongrid/estimate_settings.json", "pbrt/shapes.pbrt", "pbrt/materials.pbrt", "pbrt/lights.pbrt",
-                 "mitsuba/shapes.xml", "mitsuba/materials.xml", "mitsuba/lights.xml", "mitsuba/old.xml",
-                 "gltf/lamps.gltf", "gltf/lamps.glb", "gltf/materials.gltf", "gltf/materials.glb",
-                 "gltf/accessors.gltf", "gltf/poses.gltf", "obj/materials.obj", "obj/concave.obj", "obj/keys.mtl",
-                 "ply/ascii.ply", "ply/binary.ply", "ply/colors.ply", "ply/normals_big_endian.ply"})
+                 "photongrid/ring.json", "photongrid/cornell_box.json", "photongrid/estimate_settings.json",
+                 "pbrt/shapes.pbrt", "pbrt/materials.pbrt", "pbrt/lights.pbrt", "mitsuba/shapes.xml",
+                 "mitsuba/materials.xml", "mitsuba/lights.xml", "mitsuba/old.xml", "gltf/lamps.gltf", "gltf/lamps.glb",
+                 "gltf/materials.gltf", "gltf/materials.glb", "gltf/accessors.gltf", "gltf/poses.gltf",
+                 "obj/materials.obj", "obj/concave.obj", "obj/keys.mtl", "ply/ascii.ply", "ply/binary.ply",
+                 "ply/colors.ply", "ply/normals_big_endian.ply"})
             EXPECT_TRUE(good.contains(name)) << name;
     }
 

@@ -72,14 +72,14 @@ namespace detail {
             if (number != shape_kind<polygon>::number && number != kernels::MATERIAL_TABLE
                 && number != kernels::SCENE_SIZES && number != kernels::LIGHT_TABLE && number != kernels::LIGHT_TREE) {
                 const auto t = r.table(number);
-                if (number != kernels::TEXTURE_TABLE)
+                if (number != kernels::TEXTURE_TABLE && number != kernels::MEDIA_TABLE)
                     shapes += t.count;
                 next += t.count * t.stride;
             }
         if (shapes != count_shapes(s) - s.meshes.size() + s.rectangle_lights.size())
             return "a shape is in no table";
-        if (polygons.first != next)
-            return "the tables of the shapes do not follow each other";
+        if (polygons.first < next) // what coats and facets hide stands before the shapes, in no table
+            return "the tables of the shapes overlap";
         for (uint n = 0; n < polygons.count; ++n) {
             if (next + 1 >= r.records.size() || !unit(r.records[next]))
                 return "the normal of a polygon is not a unit vector";

@@ -7,8 +7,7 @@ namespace photongrid::testing {
 
 TYPED_TEST_P(progressive, a_map_serves_until_the_light_changes)
 {
-    auto s = this->small_scene();
-    s.render.estimate.leaks = {.side = true}; // photons keep no normals
+    const auto s = this->small_scene();
     typename TestFixture::loop drawing(this->b());
     drawing.start(s, s.render, {.enabled = false});
     drawing.step();

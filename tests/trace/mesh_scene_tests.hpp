@@ -194,7 +194,9 @@ TYPED_TEST_P(mesh_scenes, smooth_glass_and_mirrors_amid_lamps_cannot_be_seen)
         for (const auto& p : drawn.pixels)
             mean += dvec3(p) / static_cast<double>(drawn.pixels.size());
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(mean[c], dvec3(1, 2, 4)[c], 0.002 * dvec3(1, 2, 4)[c]) << m.name << ", channel " << c;
+            EXPECT_NEAR(
+                mean[c], dvec3(1, 2, 4)[c], 0.005 * dvec3(1, 2, 4)[c]) // past 8 surfaces some rays end by chance
+                << m.name << ", channel " << c;
     }
 }
 

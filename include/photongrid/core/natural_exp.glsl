@@ -9,8 +9,8 @@ inline float exp_of_minus(float x)
     precise float halves = floor(x * 1.44269504f + 0.5f);
     // ln(2) in two parts: the first one times a whole number below 2^9 is exact.
     precise float r = (x - halves * 0.693145752f) - halves * 1.42860677e-6f;
-    precise float series = 1.0f
-        - r * (1.0f - r * (0.5f - r * (0.166666667f - r * (0.0416666667f - r * (0.00833333333f - r * 0.00138888889f)))));
+    precise float last = 0.0416666667f - r * (0.00833333333f - r * 0.00138888889f);
+    precise float series = 1.0f - r * (1.0f - r * (0.5f - r * (0.166666667f - r * last)));
     precise float scaled = series * uintBitsToFloat((127u - uint(halves)) << 23u);
     return scaled;
 }

@@ -15,7 +15,6 @@
 #include <photongrid/render/add_gathered.kernel.hpp>
 #include <photongrid/render/add_light.kernel.hpp>
 #include <photongrid/render/add_near_light.kernel.hpp>
-#include <photongrid/render/disc_probes.hpp>
 #include <photongrid/render/is_near_end.kernel.hpp>
 #include <photongrid/render/photon_point.kernel.hpp>
 #include <photongrid/render/picture_search.hpp>
@@ -119,15 +118,8 @@ void gather_map_building<B>::finish(knn_estimates<B> found)
 {
     search_.reset();
     map_ = {};
-    if (settings_.edges == edge_correction::polygons)
+    if (settings_.edges != edge_correction::none)
         correct_edges(device_, scene_, points_, photons_.normals, found, search_settings_.filter);
-    if (probes_edges(settings_))
-        divide_by_cover(device_,
-            probe_discs(device_, scene_,
-                detail::points_with_radii(device_, points_, found.irradiance, 1, detail::max_radius2(search_settings_)),
-                photons_.normals, {search_settings_.filter, search_settings_.leaks.min_cosine, false})
-                .cover,
-            found);
     built_.irradiance = std::move(found.irradiance);
     points_ = {};
     photons_.directions = {};
@@ -214,12 +206,6 @@ struct gathering {
 };
 
 namespace detail {
-    /// The correction of edges in what gather rays see: from afar that of probes is not worth its time.
-    inline edge_correction edges_of_gather(const estimate_settings& s)
-    {
-        return s.edges == edge_correction::probes ? edge_correction::none : s.edges;
-    }
-
     /// The irradiance of caustics at ends of gather rays.
     template <backend B>
     knn_estimates<B> caustics_at(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
@@ -230,7 +216,7 @@ namespace detail {
             .radii = caustics.radii.of_caustics(),
             .share2 = caustics.radii.share2,
             .search = search_for_caustics(settings),
-            .edges = edges_of_gather(settings.estimate)};
+            .edges = settings.estimate.edges};
         from.search.errors = from.search.biases = false;
         point_estimates<B> search(
             device, from, ends.points, ends.surfaces, running_estimate_kind::none, step_size::largest);

@@ -2,7 +2,6 @@
 // map (shrinking_radii.hpp); then the search in the photon map; then the correction of edges.
 #pragma once
 
-#include <photongrid/render/disc_probes.hpp>
 #include <photongrid/render/edge_correction.hpp>
 #include <photongrid/render/running_search.hpp>
 #include <photongrid/render/shrinking_radii.hpp>
@@ -23,12 +22,6 @@ struct estimate_sources {
     knn_settings search{};               ///< finds the radii
     edge_correction edges = edge_correction::none;
 
-    /// Whether short rays find how much of each disc is on its surface.
-    bool probes_edges() const
-    {
-        return edges == edge_correction::probes && search.leaks.min_cosine > 0 && search.max_radius > 0
-            && map->photons.size() > 0;
-    }
     /// The search in `map`.
     knn_settings search_in_map() const
     {
@@ -70,7 +63,6 @@ public:
 
 private:
     knn_estimates<B> corrected(knn_estimates<B> found);
-    probed_discs<B> probe(const vectors& points, bool clips);
 
     B& device_;
     estimate_sources<B> from_;
@@ -80,7 +72,6 @@ private:
     step_size size_;
     std::optional<running_search<B>> radius_search_; ///< in the first map
     vectors own_radii_;                              ///< the points with their radii
-    std::optional<vectors> cover_;                   ///< of their discs, if edges are probed
     std::optional<running_search<B>> search_;
 };
 
@@ -111,36 +102,15 @@ bool point_estimates<B>::advance()
         own_radii_ = detail::points_with_radii(
             device_, points_, radius_search_->take().irradiance, from_.share2, detail::max_radius2(from_.search));
         radius_search_.reset();
-        if (from_.probes_edges()) {
-            auto probed = probe(own_radii_, true);
-            own_radii_ = std::move(probed.points);
-            cover_ = std::move(probed.cover);
-        }
         search_.emplace(device_, *from_.map, own_radii_, normals_, from_.search_in_map(), kind_, size_);
     }
     return false;
 }
 
 template <backend B>
-probed_discs<B> point_estimates<B>::probe(const vectors& points, bool clips)
-{
-    return probe_discs(
-        device_, *from_.scene, points, normals_, {from_.search.filter, from_.search.leaks.min_cosine, clips});
-}
-
-template <backend B>
 knn_estimates<B> point_estimates<B>::corrected(knn_estimates<B> found)
 {
-    if (from_.probes_edges()) {
-        vectors cover;
-        if (!cover_)
-            cover = probe(
-                detail::points_with_radii(device_, points_, found.irradiance, 1, detail::max_radius2(from_.search)),
-                false)
-                        .cover;
-        divide_by_cover(device_, cover_ ? *cover_ : cover, found);
-    }
-    if (from_.edges == edge_correction::polygons)
+    if (from_.edges != edge_correction::none)
         correct_edges(device_, *from_.scene, points_, normals_, found, from_.search.filter);
     return found;
 }

@@ -1,8 +1,8 @@
 // Lights, read from the scene buffer. Included by kernels after it. The first record of a light, `at`, has its kind,
 // the probability that a path starts on it, that it starts on it or on one before it, and how samples of it differ. Of
-// the last one, at + 5, xyz is the power, W; w: see media_around(). Those between are the kind's own (trace/lights/). Of kinds that rays can
-// hit, w of at + 1 is 1 / (pi area), m^-2 sr^-1; of SAMPLED_BY_SOLID_ANGLE at + 1 is the ball's centre, x of at + 2 its
-// radius.
+// the last one, at + 5, xyz is the power, W; w: see media_around(). Those between are the kind's own (trace/lights/).
+// Of kinds that rays can hit, w of at + 1 is 1 / (pi area), m^-2 sr^-1; of SAMPLED_BY_SOLID_ANGLE at + 1 is the ball's
+// centre, x of at + 2 its radius.
 
 uint light_at(uint number)
 {

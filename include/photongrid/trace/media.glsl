@@ -28,8 +28,8 @@ struct Crossing {
     uint behind;     // ... and on the other one
 };
 
-// A material between other media than air: its facets then scatter light once, since the table of what they hide is that
-// of its own index.
+// A material between other media than air: its facets then scatter light once, since the table of what they hide is
+// that of its own index.
 Material between_media(Material m, Crossing c)
 {
     if (c.index != m.index_of_refraction)

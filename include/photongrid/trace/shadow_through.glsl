@@ -1,5 +1,5 @@
-// Takes shadow rays (shadow_ray.glsl) through surfaces that are clear in part, and through panes, from one hit on a mesh
-// to the next: what arrives falls by the share of light that each surface stops.
+// Takes shadow rays (shadow_ray.glsl) through surfaces that are clear in part, and through panes, from one hit on a
+// mesh to the next: what arrives falls by the share of light that each surface stops.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
 #include <photongrid/trace/scene_layout.glsl>
