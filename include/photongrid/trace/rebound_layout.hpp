@@ -67,7 +67,7 @@ struct hidden_shares {
 inline hidden_shares hidden_shares_of(double alpha, double index)
 {
     constexpr uint steps = kernels::REBOUND_STEPS;
-    const double spread = double{kernels::REBOUND_SPREAD} * alpha;
+    const double spread = static_cast<double>(kernels::REBOUND_SPREAD) * alpha;
     const auto cosine_of = [&](uint n) { return std::min(1.0, spread * n / (steps * (1 + spread) - n)); };
     hidden_shares h;
     std::array<double, steps + 1> reflected{};
