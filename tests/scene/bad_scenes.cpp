@@ -342,7 +342,7 @@ namespace {
             {"material of a negative kind", [](scene& x) { x.materials[1].kind = static_cast<material_kind>(-1); },
                 "materials[1].kind"},
             {"reflectance", [](scene& x) { x.materials[1].reflectance.y = 2; }, "materials[1].reflectance"},
-            {"index of refraction", [](scene& x) { x.materials[2].index_of_refraction = 0.5; },
+            {"index of refraction", [](scene& x) { x.materials[2].index_of_refraction = 0.05; },
                 "materials[2].index_of_refraction"},
             {"roughness", [](scene& x) { x.materials[1].roughness = 1.5; }, "materials[1].roughness"},
             {"energy", [](scene& x) { x.materials[1].energy = static_cast<facet_bounces>(2); }, "materials[1].energy"},
@@ -522,7 +522,7 @@ namespace {
                 for (const double bad : {nan, infinity, -infinity, -1e-300, 1 + 1e-15})
                     refused(("materials[" + std::to_string(m) + "].reflectance").c_str(),
                         [m, c](scene& s) -> double& { return s.materials[m].reflectance[c]; }, bad);
-        for (const double bad : {nan, infinity, -infinity, 0.0, 1 - 1e-15, 10 + 1e-14})
+        for (const double bad : {nan, infinity, -infinity, 0.0, 0.1 - 1e-15, 10 + 1e-14})
             refused(
                 "materials[2].index_of_refraction",
                 [](scene& s) -> double& { return s.materials[2].index_of_refraction; }, bad);

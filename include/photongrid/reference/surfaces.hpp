@@ -6,7 +6,7 @@
 #include <photongrid/reference/random_stream.hpp>
 #include <photongrid/reference/rebounds.hpp>
 #include <photongrid/reference/texture.hpp>
-#include <photongrid/scene/media.hpp>
+#include <photongrid/trace/media.hpp>
 
 #include <algorithm>
 #include <map>

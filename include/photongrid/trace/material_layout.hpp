@@ -1,8 +1,8 @@
 // The records of materials and of their textures, for kernels (trace/materials.glsl, mixture.glsl, mesh_color.glsl).
 #pragma once
 
-#include <photongrid/scene/media.hpp>
 #include <photongrid/scene/record_writer.hpp>
+#include <photongrid/trace/media.hpp>
 #include <photongrid/trace/scene_layout.kernel.hpp>
 
 #include <cstddef>

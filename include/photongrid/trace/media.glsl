@@ -1,4 +1,4 @@
-// The media that a ray is in (scene/media.hpp): a set of them, as bits. Medium n has bit n; the highest one is there.
+// The media that a ray is in (trace/media.hpp): a set of them, as bits. Medium n has bit n; the highest one is there.
 // Included by kernels after their scene buffer, core/natural_exp.glsl and trace/materials.glsl.
 #include <photongrid/trace/inside_code.glsl>
 

@@ -43,7 +43,7 @@ enum scene_feature : uint {
     has_mixtures = detail::entry_of(material_kind::mixture).switches,
     has_clear = 1u << 22,         ///< surfaces through which some light goes straight on
     rebounds_on_rough = 1u << 23, ///< rough surfaces whose facets scatter light several times
-    has_media = 1u << 25,         ///< glass that touches other glass, or absorbs (scene/media.hpp)
+    has_media = 1u << 25,         ///< glass that touches other glass, or absorbs (trace/media.hpp)
 };
 
 static_assert(
