@@ -95,9 +95,9 @@ scene_format format_of(const std::string& path, std::string_view text)
 scene_format format_of_file(const std::string& path) { return format_of(path, beginning_of(path)); }
 
 namespace {
-    imported_scene read_any(const std::string& path, const import_settings& settings)
+    imported_scene read_any(const std::string& path, scene_format format, const import_settings& settings)
     {
-        switch (format_of_file(path)) {
+        switch (format) {
         case scene_format::pbrt: return read_pbrt(path, settings);
         case scene_format::mitsuba: return read_mitsuba(path, settings);
         case scene_format::gltf: return read_gltf(path, settings);
@@ -126,8 +126,8 @@ namespace {
 
 imported_scene import_scene(const std::string& path, const import_settings& settings)
 {
-    auto made = read_any(path, settings);
     const auto format = format_of_file(path);
+    auto made = read_any(path, format, settings);
     mend_glass(made, path, format == scene_format::pbrt || format == scene_format::mitsuba);
     if (!settings.environment.empty())
         set_environment(made.scene, settings.environment);

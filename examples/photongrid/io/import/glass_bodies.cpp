@@ -67,9 +67,8 @@ namespace {
     }
 
     /// Whether shapes hold most of the open edges of a mesh: they are met within a fiftieth of its size.
-    bool is_held(const scene& s, const placed_mesh& m, const std::vector<side>& open)
+    bool is_held(const reference::geometry& shapes, const placed_mesh& m, const std::vector<side>& open)
     {
-        const reference::geometry shapes(s);
         const double reach = 0.02 * shape_kind<placed_mesh>::size(m);
         constexpr std::size_t most = 256;
         const std::size_t step = (open.size() + most - 1) / most;
@@ -126,6 +125,14 @@ namespace {
         }
 
     private:
+        /// All shapes, built once and only if a mesh is open: turning others and panes leave them where they are.
+        const reference::geometry& shapes()
+        {
+            if (!shapes_)
+                shapes_.emplace(scene_);
+            return *shapes_;
+        }
+
         /// Whether the mesh may be the inner wall of hollow glass.
         bool is_cavity(std::size_t i) const
         {
@@ -166,8 +173,7 @@ namespace {
         void mend_open(std::size_t i)
         {
             auto& m = scene_.meshes[i];
-            const bool is_held_in_place = is_held(scene_, m, open_sides(*m.surface));
-            if (as_it_is_ || is_held_in_place)
+            if (as_it_is_ || is_held(shapes(), m, open_sides(*m.surface)))
                 say(i,
                     "is open: it is drawn as the face of a body that goes on behind it, as water in a pool; "
                     "for a pane use thin glass");
@@ -216,6 +222,7 @@ namespace {
         std::vector<import_note>& notes_;
         const std::string& file_;
         bool as_it_is_;
+        std::optional<reference::geometry> shapes_;
         std::map<std::shared_ptr<const mesh>, mesh_closure> closures_;
         std::map<std::shared_ptr<const mesh>, std::shared_ptr<const mesh>> turned_;
         std::map<std::uint32_t, std::uint32_t> panes_;
