@@ -15,7 +15,9 @@
 #include <photongrid/trace/device_scene.hpp>
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <tuple>
 
 namespace photongrid::testing {
 
@@ -78,8 +80,13 @@ namespace detail {
             }
         if (shapes != count_shapes(s) - s.meshes.size() + s.rectangle_lights.size())
             return "a shape is in no table";
-        if (polygons.first < next) // what coats and facets hide stands before the shapes, in no table
-            return "the tables of the shapes overlap";
+        std::set<std::tuple<double, double, bool>> rebounds; // what facets hide stands in no table
+        for (const auto& m : s.materials)
+            if (const bool varies = m.roughness_texture.map != nullptr; has_rebounds(m)
+                && rebounds.emplace(refracts(m) ? m.index_of_refraction : 0, m.roughness, varies).second)
+                next += 1 + (varies ? 16u : 1u) * (kernels::REBOUND_STEPS + 3);
+        if (polygons.first != next)
+            return "the tables of the shapes do not follow each other";
         for (uint n = 0; n < polygons.count; ++n) {
             if (next + 1 >= r.records.size() || !unit(r.records[next]))
                 return "the normal of a polygon is not a unit vector";
