@@ -20,13 +20,13 @@ public:
     explicit facet_rebounds(const material& m)
         : glass_(refracts(m)), index_(glass_ ? m.index_of_refraction : 1), most_(m.roughness)
     {
-        const int rows = m.roughness_texture.map ? textured_rows : 1;
+        const int count = m.roughness_texture.map ? textured_rows : 1;
         double reflected = 0;
         for (int n = 0; n < 1024; ++n)
             if (const double cosine = (n + 0.5) / 1024; glass_)
                 reflected += coat_reflectance(cosine, index_) * 2 * cosine / 1024;
-        for (int row = 0; row < rows; ++row)
-            rows_.push_back(row_of(m, rows == 1 ? most_ : most_ * std::max(0.25, double(row)) / (rows - 1), reflected));
+        for (int n = 0; n < count; ++n)
+            rows_.push_back(row_of(m, count == 1 ? most_ : most_ * std::max(0.25, double(n)) / (count - 1), reflected));
     }
 
     /// The factor on the reflectance r: of metal, r E / (1 - r (1 - E)), E: the mean share that is not hidden.
