@@ -25,6 +25,9 @@
   inclusion                what including the headers costs g++ -O2, and the stripped size of the smallest programs,
                            from an installed tree. Too slow: 1.5 s for the core's headers
   lamps                    direct light of one lamp and of a hundred of the same power in all. Too slow: 3 times as long
+  panes [BACKEND...]       nine surfaces under a pane of glass by five lights, over what they get without it, times what
+                           the pane lets through (Fresnel); also of the reference renderer. FAIL: off by over 3 %.
+                           Default: cpu serial gl vulkan
   pictures                 whole pictures with Table 1's counts, against POV-Ray's where there are any: same size, as
                            many photons sent at what makes the caustic as we store, two threads, no antialiasing
   ring                     the ring's caustic by POV-Ray's photons and by ours: how far the brightest parts overlap
@@ -40,10 +43,12 @@ is broken.
 import atexit
 import csv
 import json
+import math
 import os
 import re
 import shutil
 import statistics
+import struct
 import subprocess
 import sys
 import tempfile
@@ -126,7 +131,7 @@ def compared(key="relMSE", picture="picture.exr", reference="reference.exr", *op
 def paper_counts(scene, *keys):
     """The scene's counts of Table 1 as options."""
     with open(scene_file(scene), encoding="utf-8") as f:
-        paper = json.load(f)["as_paper"]
+        paper = json.load(f).get("as_paper", {})
     return [word for key in keys or ("photons", "k", "light_samples") if key in paper
             for word in ("--" + key.replace("_", "-"), paper[key])]
 
@@ -304,12 +309,13 @@ def estimates(_, quick):
 
 def edges(_, quick):
     heading(["scene", "estimate", "relMSE, 4 eye rays", "relMSE, 32 eye rays", "CPU s, 4 eye rays"])
-    for scene in ("cornell_blocks", "cornell_box")[:1 if quick else 2]:
+    for scene in ("cornell_blocks", "cornell_box", "bench/scenes/door.json")[:1 if quick else 3]:
         draw_reference(scene, "--size", "32x24" if quick else "128x96",
                        *(["--spp", "4", "--paths", "20000"] if quick else ["--spp", "1024"]))
         for kind in ("constant", "silverman"):
-            for leaks in ("--leaks side", "--leaks side,min_cosine",
-                          "--leaks side,min_cosine --edge-correction polygons"):
+            for leaks in ("--leaks side --edge-correction none", "--leaks side,min_cosine --edge-correction none",
+                          "--leaks side,min_cosine --edge-correction polygons",
+                          "--leaks side,min_cosine --edge-correction probes"):
                 options = f"--filter {kind} {leaks}"
                 runs = [cpu_seconds(scene, 4, options.split(), quick) for _ in range(1 if quick else 3)]
                 of_four = compared()
@@ -538,6 +544,60 @@ def lamps(_, quick):
             *(compared("relMSE", f"{side}.pfm", f"{side}-many.pfm") for side in (1, 10)), verdict(many <= 3 * one))
 
 
+def panes(backends, quick):
+    index, thick, lamp, edge = 1.5, 0.02, 1.6, 0.4  # m; the lamps are as high over the floor
+    across, down = 0.6, 0.8  # sine and cosine of the light's angle to the pane's normal
+    refracted = math.sqrt(1 - (across / index) ** 2)
+    s, p = (down - index * refracted) / (down + index * refracted), (index * down - refracted) / (index * down + refracted)
+    passed = statistics.mean((1 - r * r) / (1 + r * r) for r in (s, p))  # with all reflections between both faces
+    nearer = thick * (1 - down / (index * refracted))  # what lies behind the pane seems so much nearer
+
+    surfaces = {"matte": {"type": "lambertian"}, "plastic": {"type": "plastic"}}
+    for roughness in (0.3, 0.6):
+        surfaces[f"plastic {roughness}"] = {"type": "plastic", "roughness": roughness}
+    for roughness in (0.2, 0.35, 0.5, 0.75, 1):
+        surfaces[f"metal {roughness}"] = {"type": "metal", "roughness": roughness}
+
+    def light(kind, height):
+        at = [0, height, -lamp * across / down]
+        return {"sun": {"type": "directional", "direction": [0, -down, across], "irradiance": 3},
+                "bulb": {"type": "point", "position": at, "power": 30},
+                "spot": {"type": "spot", "position": at, "direction": [0, -down, across], "inner_angle": 20,
+                         "outer_angle": 30, "power": 30},
+                "rectangle": {"type": "rectangle", "corner": [-edge / 2, height, at[2] - edge / 2],
+                              "edge_u": [edge, 0, 0], "edge_v": [0, 0, edge], "power": 30},
+                "ball": {"type": "sphere_light", "center": at, "radius": edge / 2, "power": 30}}[kind]
+
+    def mean(surface, kind, behind_pane, *command):
+        box = {"type": "box", "corner": [-2, 0.9, -2], "edge_u": [4, 0, 0], "edge_v": [0, 0, 4],
+               "edge_w": [0, thick, 0], "material": "pane"}
+        floor = [[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]]
+        with open(f"{WORK}/pane.json", "w", encoding="utf-8") as f:
+            json.dump({"photongrid": 1, "name": "pane", "units": {"length": "m", "power": "W"},
+                       "camera": {"position": [0, 0.8, 0.6], "look_at": [0, 0, 0], "vertical_fov": 8},
+                       "materials": {"pane": {"type": "glass", "index_of_refraction": index},
+                                     # dark: what it sends back to the pane counts next to nothing
+                                     "floor": {"reflectance": 0.1, **surfaces[surface]}},
+                       "shapes": [{"type": "polygon", "vertices": floor, "material": "floor"}] + [box] * behind_pane,
+                       "lights": [light(kind, lamp if behind_pane else lamp - nearer)],
+                       "render": {"size": [8, 8], "photons": 20000 if quick else 200000, "k": 200, "max_radius": 0.05,
+                                  "spp": 16, "light_samples": 4, "passes": 4}}, f)
+        said(PROGRAM, *command, f"{WORK}/pane.json", "--quiet", "-o", f"{WORK}/pane.pfm")
+        with open(f"{WORK}/pane.pfm", "rb") as f:
+            return statistics.mean(struct.unpack("<192f", f.read()[-768:]))
+
+    by = [("render", "--backend", b, "--shader-cache", f"{WORK}/cache") for b in backends or
+          (["cpu"] if quick else ["cpu", "serial", "gl", "vulkan"])]
+    by.append(("reference", "--spp", "64" if quick else "8192", "--paths", "1e5" if quick else "1e7"))
+    heading(["surface", "light", *(c[2] if c[0] == "render" else c[0] for c in by), ""])
+    for surface in list(surfaces)[:2] if quick else surfaces:
+        for kind in ("sun", "bulb", "spot", "rectangle", "ball"):
+            right = passed * mean(surface, kind, False, "render", "--backend", "cpu")
+            shares = [mean(surface, kind, True, *command) / right for command in by]
+            row(surface, kind, *(f"{share:.3f}" for share in shares),
+                verdict(quick or all(abs(share - 1) <= 0.03 for share in shares)))
+
+
 def povray(scene, photons, picture, *options):
     """POV-Ray's picture of a scene; returns its seconds."""
     need("povray", "povray")
@@ -655,7 +715,7 @@ def window(backends, quick):
 
 
 SECTIONS = {f.__name__: f for f in (algorithms, clusters, convergence, defaults, edges, error, estimates, figure7,
-                                    gather, inclusion, lamps, pictures, ring, stages, table1, window)}
+                                    gather, inclusion, lamps, panes, pictures, ring, stages, table1, window)}
 
 if __name__ == "__main__":
     if len(sys.argv) < 2 or sys.argv[1] not in SECTIONS:

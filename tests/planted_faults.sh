@@ -123,6 +123,17 @@ faults=(
   "side reversed|include/photongrid/estimate/photon_distance.glsl|!(arrival < 0.0f)|arrival < 0.0f"
   "normals reversed|include/photongrid/estimate/photon_distance.glsl|cosine >= args.leaks.x|cosine <= args.leaks.x"
   "flattening ignored|include/photongrid/estimate/photon_distance.glsl|longer = d2 + args.leaks.y * (h * h)|longer = d2 + 0.0f * args.leaks.y * (h * h)"
+  "what lies above or below a surface counts|include/photongrid/estimate/off_surface.glsl|return !(rise2 <= most2)|return !(rise2 <= most2 + d2 * 4.0f)"
+  "what a surface bends away is rejected|include/photongrid/estimate/off_surface.glsl|(1.0f - cosine) * (1.0f + cosine) + 0.04f|0.04f"
+  "probed discs are not cut down at walls|include/photongrid/render/probe_disc.glsl|border.x > 0.0f && args.clips != 0u && probed.w > LEAST|border.x > 0.0f && args.clips > 1u && probed.w > LEAST"
+  "probed discs are not cut down to narrow surfaces|include/photongrid/render/probe_disc.glsl|progress.z >= 3.0f|progress.z >= 5.0f"
+  "probed surfaces never end|include/photongrid/render/probe_disc.glsl|met && holds_photons(i, hit, d);|true;"
+  "photons keep shading normals|include/photongrid/trace/bounce_photon.glsl|receive(at_base, s.geometric,|receive(at_base, s.shading,|on_serial_pictures"
+  "eye rays end with shading normals alone|include/photongrid/trace/eye_bounce.glsl|vec4(s.geometric.x, s.geometric.y, s.geometric.z, direction.w)|vec4(s.shading.x, s.shading.y, s.shading.z, direction.w)|on_serial_pictures"
+  "a glance finds every disc whole|include/photongrid/render/glance.glsl|looked = SEARCHED;|looked = KEPT;|on_serial_pictures"
+  "a tube is solid|include/photongrid/render/probe_disc.glsl|if (met && dot3(hit.normal, d) > 0.0f)|if (met)|on_serial_pictures"
+  "discs that are cut down are not searched again|include/photongrid/render/point_estimates.hpp|cut.count > 0|cut.count > cut.count|on_serial_pictures"
+  "probed estimates are not divided|include/photongrid/render/disc_probes.hpp|divide(estimates.irradiance, 1)|divide(estimates.standard_error, 1)"
   "standard error without the spread|include/photongrid/estimate/irradiance_estimate.glsl|terms / float(found - 2u)|terms / terms"
   "standard error of one channel|include/photongrid/estimate/gather_photons.glsl|all * all|weighted.x * weighted.x + 0.0f * all"
   "disc without floor|include/photongrid/estimate/irradiance_estimate.glsl|max(radius2, least2)|radius2"
@@ -173,7 +184,7 @@ faults=(
   "gather rays of all passes are the first's|include/photongrid/render/final_gather.hpp|settings.pass.seed_change = 0;|settings.pass = {};"
   "sequences lose a matrix|include/photongrid/core/random.glsl|place ^= (place >> 2u) & 0x33333333u;|;|on_serial_algorithms"
   "all sequences have one order|include/photongrid/core/random.glsl|return reversed_bits(nested_scrambled(reversed_bits(nth), seed));|return nth;|on_serial_algorithms"
-  "edges of estimates not corrected|include/photongrid/render/point_estimates.hpp|from_.edges != edge_correction::none|from_.edges == edge_correction::none"
+  "edges of estimates not corrected|include/photongrid/render/point_estimates.hpp|from_.edges == edge_correction::polygons|from_.edges == edge_correction::none"
   "lamp twice as bright|include/photongrid/trace/light_sample.glsl|3.18309886e-1f * seen.share|6.36619772e-1f * seen.share"
   'shafts forget the margin of the light|include/photongrid/trace/intersect/sphere.glsl|precise float both = (s.w + radius) * 1.00001f;|precise float both = s.w * 1.00001f;'
   'shafts look at one corner|include/photongrid/trace/intersect/polygon.glsl|+ (by_u < 0.0f ? by_u : 0.0f) + (by_v < 0.0f ? by_v : 0.0f);|+ 0.0f;'
@@ -495,7 +506,7 @@ tests_of() {
     backends/vulkan/*) echo on_vulkan ;;
     */film.hpp | */exact_sum.hpp) echo passes ;;
     */scene/scene.hpp | */render/*.hpp | */eye_ray*| */trace_photons.hpp) echo on_serial_pictures ;;
-    */bounce_photon.glsl | */covered_share.glsl | */covered_moments.glsl | */surface_cover.glsl | */correct_bias.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */scatter.glsl | */shadow_ray.glsl | */lights.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */lights/*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
+    */bounce_photon.glsl | */covered_share.glsl | */covered_moments.glsl | */surface_cover.glsl | */probe_disc.glsl | */correct_bias.glsl | */direct_light.glsl | */light_sample.glsl | */mesh_hit.glsl | */mesh_surface.glsl | */scatter.glsl | */shadow_ray.glsl | */lights.glsl | */mesh_light.glsl | */eye_bounce.glsl | */add_unblocked.glsl | */spot_light.glsl | */distant_light.glsl | */environment*.glsl | */lights/*.glsl | */mesh_color.glsl | */chosen_light.glsl | */emit_photon.glsl | */scene_*.glsl | */intersect/*.glsl | */optics.glsl | */shade.glsl | */tally_path.glsl) echo on_serial_pictures ;;
     *) echo on_serial_algorithms ;;
   esac
 }

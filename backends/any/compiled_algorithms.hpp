@@ -53,6 +53,8 @@
         const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, const disc_kind&);                             \
     EXTERN template disc_moments<B> covered_moments(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,        \
         const buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>&, const disc_kind&);                             \
+    EXTERN template probed_discs<B> probe_discs(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,            \
+        const buffer_of<B, glm::vec4>&, const disc_probing&);                                                          \
     EXTERN template void correct_edges(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&,                     \
         const buffer_of<B, glm::vec4>&, knn_estimates<B>&, const disc_kind&);                                          \
     EXTERN template class gather_map_building<B>;                                                                      \

@@ -78,7 +78,7 @@ namespace {
     /// Whether edge correction is asked for where nothing has edges that it corrects.
     bool corrects_nothing(const scene& s, const render_settings& settings)
     {
-        return settings.estimate.edges != edge_correction::none
+        return settings.estimate.edges == edge_correction::polygons
             && std::none_of(s.polygons.begin(), s.polygons.end(),
                 [&](const polygon& p) { return is_diffuse(s.materials, s.materials[p.material]); });
     }

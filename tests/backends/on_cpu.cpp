@@ -43,6 +43,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(cpu, boxes, ::testing::Types<cpu_tag>, tag_names)
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, neighbours, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, hard_cases_of_numbers, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, edges, ::testing::Types<cpu_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(cpu, probed_edges, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, map_files, ::testing::Types<cpu_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(cpu, scene_files, ::testing::Types<cpu_tag>, tag_names);
 

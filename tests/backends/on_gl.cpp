@@ -44,6 +44,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(gl, boxes, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, neighbours, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, hard_cases_of_numbers, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, edges, contexts, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(gl, probed_edges, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, map_files, contexts, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(gl, scene_files, contexts, tag_names);
 

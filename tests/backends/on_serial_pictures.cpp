@@ -32,6 +32,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(serial, progressive, ::testing::Types<serial_tag>
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, hard_cases, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, boxes, ::testing::Types<serial_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(serial, edges, ::testing::Types<serial_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(serial, probed_edges, ::testing::Types<serial_tag>, tag_names);
 // A picture's error against the reference is bias and noise: E(N) = bias^2 + noise^2 / N for N passes. Between N and 4
 // N passes 3/4 of the noise goes, whatever the bias and the reference's own error: E(1) - E(4) = 4 (E(4) - E(16)).
 TEST(passes, noise_falls_with_their_number)

@@ -44,6 +44,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, boxes, ::testing::Types<vulkan_tag>, tag_
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, neighbours, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, hard_cases_of_numbers, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, edges, ::testing::Types<vulkan_tag>, tag_names);
+INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, probed_edges, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, map_files, ::testing::Types<vulkan_tag>, tag_names);
 INSTANTIATE_TYPED_TEST_SUITE_P(vulkan, scene_files, ::testing::Types<vulkan_tag>, tag_names);
 

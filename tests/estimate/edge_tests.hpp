@@ -4,6 +4,7 @@
 #pragma once
 #include "corrected_light_tests.hpp"
 #include "moment_tests.hpp"
+#include "probe_tests.hpp"
 #include "share_tests.hpp"
 
 namespace photongrid::testing {

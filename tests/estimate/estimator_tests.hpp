@@ -13,7 +13,8 @@ REGISTER_TYPED_TEST_SUITE_P(estimators, every_setting_equals_brute_force, radii_
     estimates_in_small_clusters_ignore_far_photons, discs_are_no_smaller_than_rounding_moves_photons,
     find_the_photons_of_brute_force_for_any_numbers, find_the_photons_of_brute_force_in_any_clumps,
     distances_next_to_each_other_are_told_apart, a_photon_on_a_face_is_found_from_any_distance,
-    a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, searches_throw_for_wrong_settings,
+    a_radius_holds_the_photons_on_its_rim, no_light_comes_through_a_thin_wall, no_light_comes_from_a_parallel_surface,
+    no_photon_of_a_round_or_bent_surface_is_lost, searches_throw_for_wrong_settings,
     searches_can_be_watched_and_resumed, biases_do_not_change_what_they_are_of, equal_the_serial_backends_bit_for_bit);
 
 } // namespace photongrid::testing

@@ -98,7 +98,8 @@ std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std:
 {
     const vec4 a = s.photons.positions[id], p = s.points[q], n = s.point_normals[q];
     const float dx = a.x - p.x, dy = a.y - p.y, dz = a.z - p.z;
-    float d2 = dx * dx + dy * dy + dz * dz;
+    const float plain2 = dx * dx + dy * dy + dz * dz;
+    float d2 = plain2;
     if (leaks.flattening > 1) {
         const float h = dx * n.x + dy * n.y + dz * n.z;
         d2 = d2 + (leaks.flattening * leaks.flattening - 1.0f) * (h * h);
@@ -106,8 +107,15 @@ std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std:
     const auto dot = [](const vec4& x, const vec4& y) { return x.x * y.x + x.y * y.y + x.z * y.z; };
     if (leaks.side && !(dot(s.directions[id], n) < 0))
         return {};
-    if (leaks.needs_photon_normals() && !(dot(s.normals[id], n) >= leaks.min_cosine))
-        return {};
+    if (leaks.needs_photon_normals()) {
+        const vec4 sum = n + s.normals[id];
+        const float cosine = dot(s.normals[id], n), rise = dx * sum.x + dy * sum.y + dz * sum.z;
+        const float rounding = (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)) * 0x1p-17f;
+        const float most2 = plain2 * ((1 - cosine) * (1 + cosine) + 0.04f)
+            + (rounding * rounding + std::numeric_limits<float>::min());
+        if (!(cosine >= leaks.min_cosine) || !(rise * rise <= most2))
+            return {};
+    }
     return d2 < std::numeric_limits<float>::min() ? 0.0f : d2;
 }
 

@@ -101,6 +101,126 @@ TYPED_TEST_P(estimators, no_light_comes_through_a_thin_wall)
     this->report("A10", "irradiance on the dark side of a wall under any policy:", leaked);
 }
 
+TYPED_TEST_P(estimators, no_light_comes_from_a_parallel_surface)
+{
+    // Two shelves, 0.015 apart, lit from above; most light falls on the upper one. Points on the upper side of both:
+    // the normals of all photons agree, and all arrive from the same side.
+    auto& b = this->b();
+    random_source u(10);
+    oriented_set s;
+    s.photons.g = make_grid(glm::vec3(0), glm::vec3(1), {10, 10, 10});
+    for (int i = 0; i < 4000; ++i) {
+        s.photons.positions.emplace_back(u(), i < 2000 ? 0.515f : 0.5f, u(), 0.0f);
+        s.photons.powers.emplace_back(i < 2000 ? 100.0f : 1.0f);
+        s.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
+        s.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+    }
+    s.points = {{0.5f, 0.515f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}};
+    s.point_normals = {{0.0f, 1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f, 0.0f}};
+    const auto points = b.upload(std::span<const vec4>(s.points)),
+               normals = b.upload(std::span<const vec4>(s.point_normals));
+    double leaked = 0;
+    for (const auto kind : exact_maps)
+        for (const auto search : all_searches) {
+            const auto m = this->known(s, kind);
+            knn_settings k{.k = 50, .max_radius = 0.1f};
+            k.search = search;
+            k.leaks = {.side = true};
+            EXPECT_GT(b.download(knn_grid_estimate(b, m.map, points, normals, k).irradiance)[1].x, 50000.0f);
+            k.leaks.min_cosine = 0.5f;
+            const auto kept = b.download(knn_grid_estimate(b, m.map, points, normals, k).irradiance);
+            EXPECT_NEAR(kept[0].x, 200000.0f, 80000.0f) << int(search);
+            EXPECT_NEAR(kept[1].x, 2000.0f, 800.0f) << int(search);
+            leaked = std::max(leaked, static_cast<double>(kept[1].x) / 2000);
+        }
+    this->report("A10_shelf", "irradiance below a shelf 100 times as bright, over what it is:", leaked);
+}
+
+/// Random points on a surface, as photons and as query points: u() from 0 to 1 in, position and normal out.
+template <class Surface>
+oriented_set on_surface(const Surface& at, const glm::vec3& low, const glm::vec3& high, std::uint64_t seed)
+{
+    random_source u(seed);
+    oriented_set s;
+    s.photons.g = make_grid(low, high, {8, 8, 8});
+    for (int i = 0; i < 6000; ++i) {
+        const auto [position, normal] = at(u(), u());
+        s.photons.positions.emplace_back(position, 0.0f);
+        s.photons.powers.emplace_back(1.0f);
+        s.directions.emplace_back(-normal, 0.0f);
+        s.normals.emplace_back(normal, 0.0f);
+        if (i < 100) {
+            s.points.emplace_back(position, 1.0f);
+            s.point_normals.emplace_back(normal, 0.0f);
+        }
+    }
+    return s;
+}
+
+TYPED_TEST_P(estimators, no_photon_of_a_round_or_bent_surface_is_lost)
+{
+    // Nearly all that lies within the radius, and whose normal agrees, counts: on spheres and cylinders, large and
+    // small and away from the origin, and where planes meet at an angle.
+    auto& b = this->b();
+    using glm::vec3;
+    const auto direction = [](float u, float v) {
+        const float z = 2 * u - 1, r = std::sqrt(std::max(0.0f, 1 - z * z)), a = 6.2831853f * v;
+        return vec3(r * std::cos(a), r * std::sin(a), z);
+    };
+    const auto lost = [&](const oriented_set& s, float radius) {
+        knn_settings k{.max_radius = radius};
+        k.search = search_kind::fixed_radius;
+        k.leaks = {.side = true, .min_cosine = 0.5f};
+        const auto map = sorted_map(b, upload_photons(b, s), s.photons.g);
+        const auto used = b.download(knn_grid_estimate(
+            b, map, b.upload(std::span<const vec4>(s.points)), b.upload(std::span<const vec4>(s.point_normals)), k)
+                                         .used);
+        std::size_t expected = 0, found = 0;
+        for (std::size_t q = 0; q < s.points.size(); ++q) {
+            found += used[q].x;
+            for (std::size_t i = 0; i < s.normals.size(); ++i)
+                expected += glm::distance(vec3(s.points[q]), vec3(s.photons.positions[i])) <= radius
+                        && glm::dot(s.point_normals[q], s.normals[i]) >= 0.5f
+                    ? 1u
+                    : 0u;
+        }
+        EXPECT_GT(expected, 10 * s.points.size());
+        return 1 - static_cast<double>(found) / static_cast<double>(expected);
+    };
+    double worst = 0;
+    for (const float size : {1.0f, 0.01f})
+        for (const vec3& center : {vec3(0), vec3(3, -2, 1)}) {
+            const auto ball = [&](float u, float v) {
+                const vec3 n = direction(u, v);
+                return std::pair(center + size * n, n);
+            };
+            const auto tube = [&](float u, float v) {
+                const vec3 n = direction(0.5f, v);
+                return std::pair(center + size * (n + vec3(0, 0, 2 * u - 1)), n);
+            };
+            for (const float radius : {0.2f, 0.8f, 3.0f}) {
+                const vec3 reach(size);
+                worst = std::max(
+                    worst, std::abs(lost(on_surface(ball, center - reach, center + reach, 1), radius * size)));
+                worst = std::max(
+                    worst, std::abs(lost(on_surface(tube, center - reach, center + reach, 2), radius * size)));
+            }
+        }
+    for (const float degrees : {2.0f, 20.0f, 59.0f}) {
+        const float angle = glm::radians(degrees);
+        const auto roof = [&](float u, float v) {
+            const bool turned = u > 0.5f;
+            const float along = 2 * u - 1;
+            const vec3 way = turned ? vec3(std::cos(angle), -std::sin(angle), 0) : vec3(1, 0, 0);
+            return std::pair(
+                along * way + vec3(0, 0, v), turned ? vec3(std::sin(angle), std::cos(angle), 0) : vec3(0, 1, 0));
+        };
+        worst = std::max(worst, std::abs(lost(on_surface(roof, vec3(-1, -1, 0), vec3(1), 3), 0.3f)));
+    }
+    EXPECT_LT(worst, 1e-3);
+    this->report("A10_round", "most photons of round and bent surfaces that min_cosine loses, as a share:", worst);
+}
+
 TYPED_TEST_P(estimators, searches_throw_for_wrong_settings)
 {
     auto& b = this->b();

@@ -104,9 +104,9 @@ namespace {
         EXPECT_EQ(plain.estimate.search, search_kind::exact_k);
         EXPECT_EQ(plain.estimate.filter, filter_kind::silverman);
         EXPECT_EQ(plain.estimate.bias, bias_kind::unbiased);
-        EXPECT_EQ(plain.estimate.edges, edge_correction::none);
+        EXPECT_EQ(plain.estimate.edges, edge_correction::probes);
         EXPECT_TRUE(plain.estimate.leaks.side);
-        EXPECT_EQ(plain.estimate.leaks.min_cosine, -1);
+        EXPECT_EQ(plain.estimate.leaks.min_cosine, 0.5f);
         EXPECT_EQ(plain.estimate.leaks.flattening, 1);
         EXPECT_EQ(with(R"(, "search": "at_least_k")").estimate.search, search_kind::at_least_k);
         EXPECT_EQ(with(R"(, "search": "exact_k")").estimate.search, search_kind::exact_k);
@@ -120,6 +120,7 @@ namespace {
         EXPECT_EQ(with(R"(, "edge_correction": "none")").estimate.edges, edge_correction::none);
         EXPECT_EQ(with(R"(, "edge_correction": "polygons", "leaks": {"min_cosine": 0.5})").estimate.edges,
             edge_correction::polygons);
+        EXPECT_EQ(with(R"(, "edge_correction": "probes", "leaks": {})").estimate.edges, edge_correction::probes);
         EXPECT_FALSE(with(R"(, "leaks": {})").estimate.leaks.needs_point_normals());
         EXPECT_FALSE(with(R"(, "leaks": {"comment": 1, "side": false})").estimate.leaks.needs_point_normals());
         const auto all = with(R"(, "leaks": {"side": true, "min_cosine": 0.25, "flattening": 4})").estimate.leaks;
@@ -140,8 +141,8 @@ namespace {
             {"found the text \"gauss\"", R"(expected "constant", "cone", "epanechnikov" or "silverman")"});
         expect_refusal(said(R"("bias": true)"), "13:56", {"found true", R"(expected "paper" or "unbiased")"});
         expect_refusal(said(R"("edge_correction": "disks")"), "13:67",
-            {"found the text \"disks\"", R"(expected "none" or "polygons")"});
-        expect_refusal(said(R"("edge_correction": "polygons")"), "13:67",
+            {"found the text \"disks\"", R"(expected "none", "polygons" or "probes")"});
+        expect_refusal(said(R"("edge_correction": "polygons", "leaks": {})"), "13:67",
             {"edge_correction: photons of adjoining walls would count", "needs the leak policy min_cosine above 0"});
         expect_refusal(said(R"("edge_correction": "polygons", "leaks": {"side": true, "min_cosine": 0})"), "13:67",
             {"needs the leak policy min_cosine"});

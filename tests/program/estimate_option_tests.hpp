@@ -33,7 +33,7 @@ namespace {
 
     // Settings of the estimate, as the statistics have them.
     const json by_default = json::parse(
-        R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true}, "edge_correction": "none", "only": "all", "surplus": "photons", "emission": "guided"})");
+        R"({"search": "exact_k", "filter": "silverman", "bias": "unbiased", "leaks": {"side": true, "min_cosine": 0.5}, "edge_correction": "probes", "only": "all", "surplus": "photons", "emission": "guided"})");
     const json paper = json::parse(
         R"({"search": "at_least_k", "filter": "constant", "bias": "paper", "leaks": {}, "edge_correction": "none", "only": "all", "surplus": "power", "emission": "power"})");
     json but(json all, const char* more)
@@ -68,13 +68,14 @@ namespace {
             {{"--filter", "silverman", "--bias", "paper"},
                 but(by_default, R"({"filter": "silverman", "bias": "paper"})")},
             {{"--leaks", "none"}, but(by_default, R"({"leaks": {}})")},
-            {{"--leaks", "side"}, by_default},
+            {{"--leaks", "side"}, but(by_default, R"({"leaks": {"side": true}})")},
             {{"--leaks", "min_cosine"}, but(by_default, R"({"leaks": {"min_cosine": 0.5}})")},
             {{"--leaks", "flattening"}, but(by_default, R"({"leaks": {"flattening": 4}})")},
             {{"--leaks", "flattening=2.5,side,min_cosine=-0.3"},
                 but(by_default, R"({"leaks": {"side": true, "min_cosine": -0.3, "flattening": 2.5}})")},
             {{"--leaks", "min_cosine=-1,flattening=1"}, but(by_default, R"({"leaks": {}})")},
-            {{"--edge-correction", "none"}, by_default},
+            {{"--edge-correction", "none"}, but(by_default, R"({"edge_correction": "none"})")},
+            {{"--edge-correction", "probes"}, by_default},
             {{"--leaks", "min_cosine", "--edge-correction", "polygons"},
                 but(by_default, R"({"leaks": {"min_cosine": 0.5}, "edge_correction": "polygons"})")},
             {{"--as-paper", "--edge-correction", "polygons", "--leaks", "side,min_cosine=0.2"},

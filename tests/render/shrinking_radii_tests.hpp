@@ -109,7 +109,7 @@ TYPED_TEST_P(pictures, biases_equal_serials)
     auto& b = this->b();
     serial_backend serial;
     for (const auto& s : {small_cornell(), all_shapes()})
-        for (const auto edges : {edge_correction::none, edge_correction::polygons}) {
+        for (const auto edges : {edge_correction::none, edge_correction::polygons, edge_correction::probes}) {
             auto settings = shrinking(s.render, 3);
             settings.map.photons /= 4;
             settings.output.width = 24;

@@ -433,7 +433,11 @@ namespace {
                 "grid"},
             {"no pixels", [](scene& x) { x.render.output.width = 0; }, "size"},
             {"exposure", [](scene& x) { x.render.output.exposure = 65; }, "exposure"},
-            {"edge correction alone", [](scene& x) { x.render.estimate.edges = edge_correction::polygons; },
+            {"edge correction alone",
+                [](scene& x) {
+                    x.render.estimate.edges = edge_correction::polygons;
+                    x.render.estimate.leaks = {};
+                },
                 "edge_correction"},
             {"settings for the paper's method", [](scene& x) { x.paper.emplace().view.spp = 0; }, "paper: spp"},
         };
@@ -661,6 +665,8 @@ namespace {
         EXPECT_NO_THROW(check(s));
         s.estimate.leaks.min_cosine = 0;
         EXPECT_THROW(check(s), std::invalid_argument);
+        s.estimate.edges = edge_correction::probes; // without it they probe nothing
+        EXPECT_NO_THROW(check(s));
     }
 
 } // namespace

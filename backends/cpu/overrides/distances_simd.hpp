@@ -6,6 +6,7 @@
 
 #include <photongrid/backends/cpu/overrides/search_job.hpp>
 
+#include <cmath>
 #include <limits>
 
 #include <photongrid/core/exact_begin.hpp>
@@ -27,6 +28,7 @@ struct photon_vectors {
 /// A query, broadcast to all lanes.
 struct query_lanes {
     vector x, y, z, normal_x, normal_y, normal_z;
+    vector rounding2; ///< see is_off_surface in photon_distance.glsl
     HWY_INLINE explicit query_lanes(const query& q)
     {
         const floats d;
@@ -36,6 +38,8 @@ struct query_lanes {
         normal_x = hn::Set(d, q.normal.x);
         normal_y = hn::Set(d, q.normal.y);
         normal_z = hn::Set(d, q.normal.z);
+        const float rounding = (std::abs(q.at.x) + std::abs(q.at.y) + std::abs(q.at.z)) * 0x1p-17f;
+        rounding2 = hn::Set(d, rounding * rounding + std::numeric_limits<float>::min());
     }
 };
 
@@ -56,6 +60,7 @@ HWY_INLINE vector squared_distances(const search_job& j, const query_lanes& q, c
         return hn::Add(hn::Add(hn::Mul(hn::LoadU(d, v.x + i), q.normal_x), hn::Mul(hn::LoadU(d, v.y + i), q.normal_y)),
             hn::Mul(hn::LoadU(d, v.z + i), q.normal_z));
     };
+    const auto plain2 = d2;
     if (POLICIES == 2 && j.flattening > 0) {
         const auto h = hn::Add(hn::Add(hn::Mul(dx, q.normal_x), hn::Mul(dy, q.normal_y)), hn::Mul(dz, q.normal_z));
         d2 = hn::Add(d2, hn::Mul(hn::Set(d, j.flattening), hn::Mul(h, h)));
@@ -63,8 +68,17 @@ HWY_INLINE vector squared_distances(const search_job& j, const query_lanes& q, c
     d2 = hn::IfThenZeroElse(hn::Lt(d2, smallest), d2);
     if (POLICIES == 1 || (POLICIES == 2 && j.side))
         d2 = hn::IfThenElse(hn::Lt(along_normal(photons.directions), hn::Zero(d)), d2, rejected);
-    if (POLICIES == 2 && j.needs_photon_normals)
-        d2 = hn::IfThenElse(hn::Ge(along_normal(photons.normals), hn::Set(d, j.min_cosine)), d2, rejected);
+    if (POLICIES == 2 && j.needs_photon_normals) {
+        const auto& m = photons.normals;
+        const auto cosine = along_normal(m), one = hn::Set(d, 1.0f);
+        const auto rise = hn::Add(hn::Add(hn::Mul(dx, hn::Add(q.normal_x, hn::LoadU(d, m.x + i))),
+                                      hn::Mul(dy, hn::Add(q.normal_y, hn::LoadU(d, m.y + i)))),
+            hn::Mul(dz, hn::Add(q.normal_z, hn::LoadU(d, m.z + i))));
+        const auto share2 = hn::Add(hn::Mul(hn::Sub(one, cosine), hn::Add(one, cosine)), hn::Set(d, 0.04f));
+        const auto on_surface
+            = hn::Le(hn::Mul(rise, rise), hn::Add(hn::Mul(plain2, share2), q.rounding2)); // see is_off_surface
+        d2 = hn::IfThenElse(hn::And(hn::Ge(cosine, hn::Set(d, j.min_cosine)), on_surface), d2, rejected);
+    }
     return d2;
 }
 

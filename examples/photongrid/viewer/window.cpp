@@ -246,9 +246,9 @@ namespace {
                 "Left button: a click selects; a drag moves the selected object (with Shift, parallel to the floor) "
                 "or, elsewhere, turns the camera. Right or middle button, or Shift: pan. Wheel: zoom. A moving camera "
                 "keeps the photon map; a change of the scene needs a new one.");
-            panel_.draw(picture_.exposure());
+            draw_buttons(); // above the settings, which may need to be scrolled
             ImGui::Separator();
-            draw_buttons();
+            panel_.draw(picture_.exposure());
             picture_.draw_curves();
             ImGui::PopItemWidth();
         }

@@ -30,6 +30,8 @@ enum class edge_correction : std::uint8_t {
     none,     ///< no correction: an estimate at a straight edge is half of the irradiance, in a right corner a quarter
     polygons, ///< on polygons, divide by the share of the disc that lies on the surface, weighted by the filter
               ///< (edge_correction.hpp)
+    probes,   ///< on surfaces of every kind, by a share that short rays find (disc_probes.hpp). Discs whose radius is
+              ///< known beforehand, as radii that shrink are, also end where a surface begins again behind a wall
 };
 
 /// Policies against light that leaks through walls and around corners. A rejected photon neither counts towards k nor
@@ -37,10 +39,11 @@ enum class edge_correction : std::uint8_t {
 struct leak_policy {
     bool side = false; ///< reject photons that arrive from behind the surface; needs photons' directions and points'
                        ///< normals
-    float min_cosine = -1; ///< reject photons on surfaces whose normal has a smaller cosine with the point's; needs
-                           ///< both normals; -1: off
-    float flattening = 1;  ///< factor for distances along the normal, so that the search ball becomes a flat ellipsoid;
-                           ///< needs points' normals; 1: off
+    /// Reject photons of other surfaces: those whose normal has a smaller cosine with the point's, and those that lie
+    /// off the surface through the point (off_surface.glsl), as on the shelf below; needs both normals; -1: off.
+    float min_cosine = -1;
+    float flattening = 1; ///< factor for distances along the normal, so that the search ball becomes a flat ellipsoid;
+                          ///< needs points' normals; 1: off
 
     bool needs_photon_normals() const { return min_cosine > -1; }
     bool needs_point_normals() const { return side || min_cosine > -1 || flattening > 1; }

@@ -10,12 +10,15 @@
 // c^2 - 1, where distances along the normal are multiplied by c.
 //
 // q, w, m: the photon's position, direction and surface normal; p, n: the query's position and surface normal.
+#include <photongrid/estimate/off_surface.glsl>
+
 float distance2_of(vec4 q, vec4 w, vec4 m, vec4 p, vec4 n)
 {
     precise float dx = q.x - p.x;
     precise float dy = q.y - p.y;
     precise float dz = q.z - p.z;
-    precise float d2 = dx * dx + dy * dy + dz * dz;
+    precise float plain2 = dx * dx + dy * dy + dz * dz;
+    float d2 = plain2;
     if (FLATTEN) {
         precise float h = dx * n.x + dy * n.y + dz * n.z;
         precise float longer = d2 + args.leaks.y * (h * h);
@@ -30,7 +33,7 @@ float distance2_of(vec4 q, vec4 w, vec4 m, vec4 p, vec4 n)
     }
     if (NORMALS) {
         precise float cosine = m.x * n.x + m.y * n.y + m.z * n.z;
-        if (!(cosine >= args.leaks.x))
+        if (!(cosine >= args.leaks.x) || is_off_surface(dx, dy, dz, plain2, m, n, cosine, p))
             d2 = 3.4028234e38f;
     }
     return d2;

@@ -15,6 +15,7 @@
 #include <photongrid/render/add_gathered.kernel.hpp>
 #include <photongrid/render/add_light.kernel.hpp>
 #include <photongrid/render/add_near_light.kernel.hpp>
+#include <photongrid/render/disc_probes.hpp>
 #include <photongrid/render/is_near_end.kernel.hpp>
 #include <photongrid/render/photon_point.kernel.hpp>
 #include <photongrid/render/picture_search.hpp>
@@ -118,8 +119,15 @@ void gather_map_building<B>::finish(knn_estimates<B> found)
 {
     search_.reset();
     map_ = {};
-    if (settings_.edges != edge_correction::none)
+    if (settings_.edges == edge_correction::polygons)
         correct_edges(device_, scene_, points_, photons_.normals, found, search_settings_.filter);
+    if (probes_edges(settings_))
+        divide_by_cover(device_,
+            probe_discs(device_, scene_,
+                detail::points_with_radii(device_, points_, found.irradiance, 1, detail::max_radius2(search_settings_)),
+                photons_.normals, {search_settings_.filter, search_settings_.leaks.min_cosine, false})
+                .cover,
+            found);
     built_.irradiance = std::move(found.irradiance);
     points_ = {};
     photons_.directions = {};
@@ -206,6 +214,12 @@ struct gathering {
 };
 
 namespace detail {
+    /// The correction of edges in what gather rays see: from afar that of probes is not worth its time.
+    inline edge_correction edges_of_gather(const estimate_settings& s)
+    {
+        return s.edges == edge_correction::probes ? edge_correction::none : s.edges;
+    }
+
     /// The irradiance of caustics at ends of gather rays.
     template <backend B>
     knn_estimates<B> caustics_at(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
@@ -216,10 +230,10 @@ namespace detail {
             .radii = caustics.radii.of_caustics(),
             .share2 = caustics.radii.share2,
             .search = search_for_caustics(settings),
-            .edges = settings.estimate.edges};
+            .edges = edges_of_gather(settings.estimate)};
         from.search.errors = from.search.biases = false;
         point_estimates<B> search(
-            device, from, ends.points, ends.surfaces, running_estimate_kind::none, step_size::largest);
+            device, from, ends.points, ends.directions, running_estimate_kind::none, step_size::largest);
         while (!search.advance()) {}
         return search.take();
     }
@@ -275,7 +289,7 @@ void add_gather_rays(B& device, const gather_sources<B>& from, const detail::eye
         const bool is_last = ray.nth + 1 == most_rays;
         const auto settings = detail::settings_of(ray, from.scene.layout);
         auto hits = detail::gather_hits(device, from.scene, starts, first, ray, settings);
-        const auto found = knn_neighbours(device, from.map.nearest, hits.points, hits.surfaces, nearest);
+        const auto found = knn_neighbours(device, from.map.nearest, hits.points, hits.directions, nearest);
         device.template run<kernels::add_gathered>(n,
             {.share = share, .first = first, .leaves_near = is_last ? 0u : 1u},
             reads(starts.points, hits.directions, hits.throughputs, found.ids, found.distances2, from.map.irradiance),

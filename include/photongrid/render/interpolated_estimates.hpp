@@ -11,15 +11,12 @@
 // those at the corners: photons that crowd between corners are not missed.
 #pragma once
 
-#include <photongrid/map/prefix_sums.hpp>
 #include <photongrid/render/interpolation_round.kernel.hpp>
-#include <photongrid/render/is_searched.kernel.hpp>
+#include <photongrid/render/marked_points.hpp>
 #include <photongrid/render/point_estimates.hpp>
 #include <photongrid/render/row_bands.hpp>
-#include <photongrid/render/searched_point.kernel.hpp>
-#include <photongrid/render/searched_words.kernel.hpp>
-#include <photongrid/render/take_estimate.kernel.hpp>
-#include <photongrid/render/take_vector.kernel.hpp>
+
+#include <tuple>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -75,8 +72,6 @@ private:
     static constexpr uint last_round = 2, only_round = 3; ///< see interpolation_round.glsl
 
     void begin_round();
-    void end_round();
-    void take(const vectors& found, vectors& values);
 
     B& device_;
     estimate_sources<B> from_;
@@ -87,9 +82,10 @@ private:
     step_size step_;
     std::optional<point_estimates<B>> whole_; ///< where nothing is interpolated
     uint round_ = 0;
-    knn_estimates<B> estimates_;                  ///< those of the rounds so far
-    buffer_of<B, uint> states_, searched_, sums_; ///< see interpolation_round.glsl, searched_words.glsl
-    vectors places_, place_normals_;              ///< points of the round's search
+    knn_estimates<B> estimates_;        ///< those of the rounds so far
+    buffer_of<B, uint> states_;         ///< see interpolation_round.glsl
+    detail::marked_points<B> searched_; ///< in this round
+    vectors places_, place_normals_;    ///< those points
     std::optional<point_estimates<B>> of_round_;
 };
 
@@ -127,17 +123,8 @@ void interpolated_estimates<B>::begin_round()
     device_.template run<kernels::interpolation_round>(n, {.size = size_, .number = round_, .spacing2 = spacing2_},
         reads(points_, normals_, states_, estimates_.irradiance), writes(states));
     states_ = std::move(states);
-    const auto count = detail::checked_count<kernels::is_searched>(device_, n, {}, reads(states_));
-    const auto words = static_cast<uint>((n + 31) / 32);
-    auto bits = device_.template make<uint>(words);
-    searched_ = device_.template make<uint>(words);
-    device_.template run<kernels::searched_words>(
-        words, {.pixels = static_cast<uint>(n)}, reads(states_), writes(searched_, bits));
-    sums_ = prefix_sums(device_, bits);
-    places_ = device_.template make<glm::vec4>(count);
-    place_normals_ = device_.template make<glm::vec4>(count);
-    device_.template run<kernels::searched_point>(
-        count, {.words = words}, reads(searched_, sums_, points_, normals_), writes(places_, place_normals_));
+    searched_ = {device_, states_};
+    std::tie(places_, place_normals_) = searched_.gather(device_, points_, normals_);
     of_round_.emplace(device_, from_, places_, place_normals_, running_estimate_kind::none, step_);
 }
 
@@ -150,36 +137,9 @@ bool interpolated_estimates<B>::advance()
         begin_round();
     if (!of_round_->advance())
         return false;
-    end_round();
-    return round_++ >= last_round;
-}
-
-template <backend B>
-void interpolated_estimates<B>::take(const vectors& found, vectors& values)
-{
-    auto taken = device_.template make<glm::vec4>(values.size());
-    device_.template run<kernels::take_vector>(
-        values.size(), {.size = size_}, reads(states_, searched_, sums_, found, values), writes(taken));
-    values = std::move(taken);
-}
-
-template <backend B>
-void interpolated_estimates<B>::end_round()
-{
-    const auto n = points_.size();
-    auto found = of_round_->take();
+    detail::take_estimates(device_, size_, states_, searched_, of_round_->take(), estimates_);
     of_round_.reset();
-    auto irradiance = device_.template make<glm::vec4>(n);
-    auto used = device_.template make<glm::uvec2>(n);
-    device_.template run<kernels::take_estimate>(n, {.size = size_},
-        reads(states_, searched_, sums_, found.irradiance, found.used, estimates_.irradiance, estimates_.used),
-        writes(irradiance, used));
-    estimates_.irradiance = std::move(irradiance);
-    estimates_.used = std::move(used);
-    take(found.standard_error, estimates_.standard_error);
-    const auto biases = found.biases.all(), taken = estimates_.biases.all();
-    for (std::size_t i = 0; i < biases.size(); ++i)
-        take(*biases[i], *taken[i]);
+    return round_++ >= last_round;
 }
 
 } // namespace photongrid

@@ -1,8 +1,12 @@
 // The estimates at points on surfaces that a picture needs, in steps: their radii first, if those are given by another
-// map (shrinking_radii.hpp); then the search in the photon map; then the correction of edges.
+// map (shrinking_radii.hpp); then the search in the photon map; then the correction of edges. Where probes find that a
+// disc reaches beyond its surface, it is cut down and searched again.
 #pragma once
 
+#include <photongrid/render/disc_probes.hpp>
 #include <photongrid/render/edge_correction.hpp>
+#include <photongrid/render/lit_disc.kernel.hpp>
+#include <photongrid/render/marked_points.hpp>
 #include <photongrid/render/running_search.hpp>
 #include <photongrid/render/shrinking_radii.hpp>
 
@@ -22,6 +26,12 @@ struct estimate_sources {
     knn_settings search{};               ///< finds the radii
     edge_correction edges = edge_correction::none;
 
+    /// Whether short rays find how much of each disc is on its surface.
+    bool probes_edges() const
+    {
+        return edges == edge_correction::probes && search.leaks.min_cosine > 0 && search.max_radius > 0
+            && map->photons.size() > 0;
+    }
     /// The search in `map`.
     knn_settings search_in_map() const
     {
@@ -54,15 +64,19 @@ public:
     /// Whether there are estimates to show.
     bool has_running_estimates() const { return search_.has_value(); }
     /// The estimates so far, for display, if there are any.
-    knn_estimates<B> running_estimates() { return corrected(search_->running_estimates()); }
+    knn_estimates<B> running_estimates() { return corrected_by_polygons(search_->running_estimates()); }
     /// The number of points whose estimates are not finished.
     std::uint64_t unfinished() const { return search_ ? search_->unfinished() : points_.size(); }
 
     /// The estimates. They must be finished.
-    knn_estimates<B> take() { return corrected(search_->take()); }
+    knn_estimates<B> take()
+    {
+        return from_.probes_edges() ? corrected_by_probes(search_->take()) : corrected_by_polygons(search_->take());
+    }
 
 private:
-    knn_estimates<B> corrected(knn_estimates<B> found);
+    knn_estimates<B> corrected_by_polygons(knn_estimates<B> found);
+    knn_estimates<B> corrected_by_probes(knn_estimates<B> found);
 
     B& device_;
     estimate_sources<B> from_;
@@ -108,10 +122,35 @@ bool point_estimates<B>::advance()
 }
 
 template <backend B>
-knn_estimates<B> point_estimates<B>::corrected(knn_estimates<B> found)
+knn_estimates<B> point_estimates<B>::corrected_by_polygons(knn_estimates<B> found)
 {
-    if (from_.edges != edge_correction::none)
+    if (from_.edges == edge_correction::polygons)
         correct_edges(device_, *from_.scene, points_, normals_, found, from_.search.filter);
+    return found;
+}
+
+template <backend B>
+knn_estimates<B> point_estimates<B>::corrected_by_probes(knn_estimates<B> found)
+{
+    const auto n = points_.size();
+    const bool have_radii = from_.radii.map != nullptr;
+    vectors found_radii;
+    if (!have_radii)
+        found_radii
+            = detail::points_with_radii(device_, points_, found.irradiance, 1, detail::max_radius2(from_.search));
+    auto discs = device_.template make<glm::vec4>(n);
+    device_.template run<kernels::lit_disc>(
+        n, {}, reads(have_radii ? own_radii_ : found_radii, found.irradiance), writes(discs));
+    const auto probed = probe_discs(
+        device_, *from_.scene, discs, normals_, {from_.search.filter, from_.search.leaks.min_cosine, have_radii});
+    if (const detail::marked_points<B> cut(device_, probed.cut); cut.count > 0) {
+        const auto [places, place_normals] = cut.gather(device_, probed.points, normals_);
+        running_search<B> again(device_, *from_.map, places, place_normals, from_.search_in_map(),
+            running_estimate_kind::none, step_size::largest);
+        while (!again.advance()) {}
+        detail::take_estimates(device_, glm::uvec2(static_cast<uint>(n), 1), probed.cut, cut, again.take(), found);
+    }
+    divide_by_cover(device_, probed.cover, found);
     return found;
 }
 

@@ -201,7 +201,7 @@ private:
         detail::time_stage(device_, stats_.radiance_estimate, [&] {
             if (!search_)
                 search_.emplace(device_, sources(next_light()), pixels_of(ray), samples_->hits.points,
-                    samples_->hits.surfaces, next_light() > 0 ? running_estimate_kind::none : shown_while_running(),
+                    samples_->hits.directions, next_light() > 0 ? running_estimate_kind::none : shown_while_running(),
                     how_.size);
             // Previews have the light of all branches; running estimates among them must, too.
             if (search_->is_shown() && (how_.may_search_twice || canvas_.rays + 1 == branches_))

@@ -80,17 +80,17 @@ enum class bias_report { automatic, no, yes };
 
 /// The irradiance estimate (the paper's radiance estimate) of a picture (2.3).
 struct estimate_settings {
-    std::uint32_t k = 500;                         ///< photons sought per estimate
-    std::uint32_t caustic_k = 100;                 ///< the same in a map of caustic photons of its own
-    double max_radius = 0.1;                       ///< m
-    search_kind search = search_kind::exact_k;     ///< which photons an estimate uses
-    filter_kind filter = filter_kind::silverman;   ///< weight by distance
-    bias_kind bias = bias_kind::unbiased;          ///< whether the photon that sets the radius counts
-    leak_policy leaks{.side = true};               ///< which photons are rejected
-    edge_correction edges = edge_correction::none; ///< polygons: needs leak_policy::min_cosine above 0
-    indirect_kind indirect = indirect_kind::map;   ///< how indirect light is computed
-    std::uint32_t gather_rays = 16;                ///< rays or paths of a final gather per eye ray
-    radius_kind radii = radius_kind::shrinking;    ///< from pass to pass, if there are several
+    std::uint32_t k = 500;                               ///< photons sought per estimate
+    std::uint32_t caustic_k = 100;                       ///< the same in a map of caustic photons of its own
+    double max_radius = 0.1;                             ///< m
+    search_kind search = search_kind::exact_k;           ///< which photons an estimate uses
+    filter_kind filter = filter_kind::silverman;         ///< weight by distance
+    bias_kind bias = bias_kind::unbiased;                ///< whether the photon that sets the radius counts
+    leak_policy leaks{.side = true, .min_cosine = 0.5f}; ///< which photons are rejected
+    edge_correction edges = edge_correction::probes;     ///< needs leak_policy::min_cosine above 0; probes: else none
+    indirect_kind indirect = indirect_kind::map;         ///< how indirect light is computed
+    std::uint32_t gather_rays = 16;                      ///< rays or paths of a final gather per eye ray
+    radius_kind radii = radius_kind::shrinking;          ///< from pass to pass, if there are several
     /// Estimates are interpolated between those that are at most so many of their radii away (2.4, 4.5;
     /// interpolated_estimates.hpp), at most 0.5; 0: none are.
     double interpolation = 0.5;
@@ -222,6 +222,12 @@ inline bool reports_bias(const render_settings& s)
 {
     return s.output.report_bias == bias_report::yes
         || (s.output.report_bias == bias_report::automatic && s.output.until_error > 0 && has_shrinking_radii(s));
+}
+/// Whether short rays find the edges of surfaces. Without a policy against adjoining surfaces the photons of these
+/// would count, though their area does not.
+inline bool probes_edges(const estimate_settings& s)
+{
+    return s.edges == edge_correction::probes && s.leaks.min_cosine > 0;
 }
 /// Whether photons keep the normals of their surfaces.
 inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.needs_photon_normals() || gathers(s); }

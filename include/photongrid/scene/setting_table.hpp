@@ -346,16 +346,20 @@ namespace setting_table {
         in_scenes::optional,
         {.group = setting_group::estimate,
             .what
-            = "photons rejected: *side*, those from behind the surface; *min_cosine*, those on surfaces whose normal "
-              "has a smaller cosine with the point's; *flattening*, distances along the normal count so many times",
+            = "photons rejected: *side*, those from behind the surface; *min_cosine*, those on other surfaces, whose "
+              "normal has a smaller cosine with the point's or which lie above or below its own; *flattening*, "
+              "distances along the normal count so many times",
             .more = "Against light from behind walls and around corners. It takes hardly any time.",
             .section = "leaks"}};
     inline constexpr setting edge_correction{"edge_correction", of(&estimate_settings::edges),
-        one_of{{named{"none", photongrid::edge_correction::none}, {"polygons", photongrid::edge_correction::polygons}}},
+        one_of{{named{"none", photongrid::edge_correction::none}, {"polygons", photongrid::edge_correction::polygons},
+            {"probes", photongrid::edge_correction::probes}}},
         in_scenes::optional,
         {.group = setting_group::expert,
-            .what = "*polygons*: divide estimates by the share of their disc that lies on the surface; needs "
-                    "*min_cosine* in `leaks`",
+            .what
+            = "divide estimates by the share of their disc that lies on the surface: *probes*, as short rays find "
+              "it on surfaces of every kind; *polygons*, exactly, on polygons alone; needs *min_cosine* in "
+              "`leaks`",
             .more = "With *none* an estimate at a straight edge is half of the irradiance, in a right-angled corner a "
                     "quarter.",
             .section = "edge-correction",
@@ -427,7 +431,7 @@ constexpr void for_each_setting(const Visit& visit)
 inline void check(const render_settings& s)
 {
     for_each_setting([&](const auto& row) { row.values.check(row.name, row.of(s)); });
-    detail::require(s.estimate.edges == edge_correction::none || s.estimate.leaks.min_cosine > 0,
+    detail::require(s.estimate.edges != edge_correction::polygons || s.estimate.leaks.min_cosine > 0,
         "edge_correction: photons of adjoining walls would count, though their area does not; it needs the leak policy "
         "min_cosine above 0, for example 0.5 (or edge_correction none)");
 }

@@ -29,7 +29,8 @@ INPUT(7, vec4, mesh_normals)
 INPUT(8, vec4, mesh_shadings)
 INPUT(9, vec4, mesh_colors) // see mesh_color.glsl
 OUTPUT(0, vec4, position)       // xyz, m; w: event
-// w of power, next_origin and next_direction: x, y and z of the normal; with MEDIA the last is an inside_code.
+// w of power, next_origin and next_direction: x, y and z of the geometric normal; with MEDIA the last is an
+// inside_code.
 OUTPUT(1, vec4, power)          // rgb of the incoming photon, W, not yet divided by the number of paths
 // xyz: direction of the incoming photon; w: material; with codes_colors() a color_code
 OUTPUT(2, vec4, direction)
@@ -157,7 +158,7 @@ void pass_clear(Hit hit, Surface s, uint surface, Photon photon, float round_by)
     direction.w = color_code(vec3(1.0f, 1.0f, 1.0f));
     precise float leaving = 1.0f / received_by_base(s);
     position.w = event_of_both(photon.end, photon.before, leaving, round_by, true);
-    leave(hit, s.d, s.shading, photon.inside);
+    leave(hit, s.d, s.geometric, photon.inside);
 }
 
 // The photon meets a surface, which may store it, and leaves it or is absorbed. `other`: see surface_for(); `round_by`:
@@ -175,7 +176,7 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool
     uint surface = for_rough ? rough_surface_for(s, other, photon.before) : surface_for(s, other, r);
     float received = surface == SPECULAR_SURFACE ? 1.0f : received_by_base(s);
     precise vec3 at_base = vec3(photon.power) * received; // which sends it out about its geometric normal
-    receive(at_base, s.shading, photon.inside);
+    receive(at_base, s.geometric, photon.inside);
     position.w = event_code(surface, ABSORBED, photon.before);
     if (CLEAR && passes) {
         pass_clear(hit, s, surface, photon, round_by);
@@ -206,9 +207,9 @@ void scatter(Hit hit, Surface s, uint other, Photon photon, float round_by, bool
         position.w = event_of_both(photon.end, photon.before, leaving, round_by, false);
     } else if (surface == SPECULAR_SURFACE) {
         precise vec3 scaled = at_base * l.power_scale;
-        receive(scaled, s.shading, photon.inside);
+        receive(scaled, s.geometric, photon.inside);
     }
-    leave(hit, l.direction, s.shading, l.way == BY_REFRACTION ? behind : photon.inside);
+    leave(hit, l.direction, s.geometric, l.way == BY_REFRACTION ? behind : photon.inside);
 }
 
 void kernel(uint i)

@@ -35,7 +35,8 @@ INPUT(5, vec4, mesh_colors) // see mesh_color.glsl
 // xyz: origin, at the end the point hit, m; w: 0 in flight, a point_code() on a diffuse surface, -2 - alpha on a rough
 // one (rough_points.glsl), else -1
 STATE(0, vec4, point)
-STATE(1, vec4, direction)  // xyz: unit vector; w: surfaces hit
+// xyz: unit vector; at the end on a diffuse surface its geometric normal towards the eye; w: surfaces hit
+STATE(1, vec4, direction)
 // rgb: factor between radiance here and at the eye; at the end on a diffuse surface between pi times its irradiance, or
 // below a coat the part of that which passed, and radiance at the eye. w: splits so far
 STATE(2, vec4, throughput)
@@ -255,6 +256,7 @@ void end_on_base(Hit hit, Surface s, vec3 reflected)
         p = ray_at(p, s.geometric, more);
     point = vec4(p.x, p.y, p.z, is_counted() ? point_code(uint(surface.w)) : -1.0f);
     throughput = vec4(reflected.x, reflected.y, reflected.z, throughput.w);
+    direction = vec4(s.geometric.x, s.geometric.y, s.geometric.z, direction.w);
     surface = vec4(s.shading.x, s.shading.y, s.shading.z, float(s.number));
 }
 

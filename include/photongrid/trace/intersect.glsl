@@ -42,11 +42,11 @@ float hit_shape(uint kind, uint at, vec3 o, vec3 d)
 
 #include <photongrid/trace/intersect/tree.glsl>
 
-// The closest hit of the ray from o in direction d.
-Hit intersect_closest(vec3 o, vec3 d)
+// The closest hit of the ray from o in direction d, if it is nearer than `far`.
+Hit intersect_before(vec3 o, vec3 d, float far)
 {
     Closest c;
-    c.t = 3.0e38f;
+    c.t = far;
     c.kind = NO_SHAPE;
     c.at = 0u;
     if (TREE_OF_SHAPES) {
@@ -84,6 +84,11 @@ Hit intersect_closest(vec3 o, vec3 d)
         hit = polygon_surface(c.at, hit);
     hit.shading = hit.normal;
     return hit;
+}
+
+Hit intersect_closest(vec3 o, vec3 d)
+{
+    return intersect_before(o, d, 3.0e38f);
 }
 
 // A set of polygons and spheres, as bits (bit_of). In a tree: without polygons the surfaces of rectangle lights are

@@ -52,25 +52,35 @@ struct mesh_rays {
         search.advance();
         return search.take_states();
     }
-    /// The surfaces at the closest hits.
+    /// The surfaces at the closest hits, with their colours.
     void find(B& device, const device_scene<B>& s, mesh_hits<B>& hits) const;
+    /// The surfaces alone. Returns what search() does.
+    buffer_of<B, glm::uvec4> find_surfaces(B& device, const device_scene<B>& s, mesh_hits<B>& hits) const;
 };
 
 template <backend B>
 void mesh_rays<B>::find(B& device, const device_scene<B>& s, mesh_hits<B>& hits) const
 {
-    const auto found = search(device, s, hit_kind::closest);
+    const auto found = find_surfaces(device, s, hits);
     const auto& m = *s.meshes;
-    const uint instances = m.triangles.instance_count();
-    device.template run<kernels::mesh_surface>({origins.size(), 0u, s.layout.features}, {.count = instances},
-        reads(s.records, origins, directions, found, m.faces, m.planes, m.vertices, m.normals, m.triangles.instances),
-        writes(hits.places, hits.normals, hits.shadings));
     if (s.has_textures())
         device.template run<kernels::mesh_color>({colors_per_hit(s.layout) * origins.size(), 0u, s.layout.features},
-            {.count = instances},
+            {.count = m.triangles.instance_count()},
             reads(s.records, found, hits.places, hits.normals, m.faces, m.vertices, m.attributes, *s.texels,
                 m.triangles.instances),
             writes(hits.colors));
+}
+
+template <backend B>
+buffer_of<B, glm::uvec4> mesh_rays<B>::find_surfaces(B& device, const device_scene<B>& s, mesh_hits<B>& hits) const
+{
+    auto found = search(device, s, hit_kind::closest);
+    const auto& m = *s.meshes;
+    device.template run<kernels::mesh_surface>({origins.size(), 0u, s.layout.features},
+        {.count = m.triangles.instance_count()},
+        reads(s.records, origins, directions, found, m.faces, m.planes, m.vertices, m.normals, m.triangles.instances),
+        writes(hits.places, hits.normals, hits.shadings));
+    return found;
 }
 
 } // namespace photongrid::detail

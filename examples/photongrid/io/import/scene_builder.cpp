@@ -241,8 +241,7 @@ void scene_builder::choose_settings()
     auto& r = made_.render;
     r.map.photons = 200'000;
     r.map.caustic_photons = 10'000;
-    r.estimate.k = 500;                                    // fewer leave blotches on walls
-    r.estimate.leaks = {.side = true, .min_cosine = 0.5f}; // light leaks round corners and through thin walls
+    r.estimate.k = 500; // fewer leave blotches on walls
     r.estimate.max_radius = std::clamp(0.1 * glm::length(b.high - b.low), 1e-6, max_length);
     r.view.spp = 1;
     r.view.light_samples = 2;

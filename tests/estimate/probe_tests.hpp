@@ -1,0 +1,304 @@
+// Shares of discs that short rays find (disc_probes.hpp), on any backend: on surfaces of every kind of shape, with and
+// without walls; discs that end behind walls; narrow surfaces.
+#pragma once
+
+#include "edges.hpp"
+
+#include <photongrid/render/point_estimates.hpp>
+
+namespace photongrid::testing {
+
+/// The kinds of shapes that squares are made of.
+enum class made_of { polygons, meshes, boxes };
+inline constexpr made_of all_kinds[] = {made_of::polygons, made_of::meshes, made_of::boxes};
+
+/// Adds a rectangle of a kind. A box has 0.3 m of matter below it, on the side that u x v points away from.
+inline void add_rectangle(scene& s, made_of kind, const dvec3& corner, const dvec3& u, const dvec3& v)
+{
+    const dvec3 below = -0.3 * glm::normalize(glm::cross(u, v));
+    switch (kind) {
+    case made_of::polygons: s.polygons.push_back({{corner, corner + u, corner + u + v, corner + v}, 0}); break;
+    case made_of::boxes: s.boxes.push_back({corner, u, v, below, 0}); break;
+    case made_of::meshes:
+        s.meshes.push_back({"",
+            std::make_shared<const mesh>(
+                mesh{{glm::vec3(corner), glm::vec3(corner + u), glm::vec3(corner + u + v), glm::vec3(corner + v)},
+                    {{0, 1, 2}, {0, 2, 3}}}),
+            glm::dmat3(1), dvec3(0), 0});
+    }
+}
+/// The square from 0 to 1 along x and z.
+inline scene square_of(made_of kind)
+{
+    scene s = empty_scene({0.5, 1.5, 0.5});
+    add_rectangle(s, kind, {0, 0, 0}, {0, 0, 1}, {1, 0, 0});
+    return s;
+}
+/// The same with walls on all sides.
+inline scene room_of(made_of floor, made_of walls)
+{
+    scene s = square_of(floor);
+    add_rectangle(s, walls, {0, 0, 0}, {0, 1, 0}, {0, 0, 1});
+    add_rectangle(s, walls, {1, 0, 0}, {0, 0, 1}, {0, 1, 0});
+    add_rectangle(s, walls, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    add_rectangle(s, walls, {0, 0, 1}, {0, 1, 0}, {1, 0, 0});
+    return s;
+}
+
+template <class Tag>
+class probed_edges : public edges<Tag> {
+protected:
+    using B = typename Tag::type;
+    struct found {
+        std::vector<glm::vec4> points, cover;
+    };
+
+    template <class Device>
+    static found probe_on(Device& b, const device_scene<Device>& scene, const discs& d, const disc_probing& how)
+    {
+        const auto p = b.upload(std::span<const glm::vec4>(d.points)),
+                   n = b.upload(std::span<const glm::vec4>(d.normals));
+        const auto probed = probe_discs(b, scene, p, n, how);
+        return {b.download(probed.points), b.download(probed.cover)};
+    }
+    /// Positions of `d` are the scene's. Serial's bits are compared.
+    found probe(const scene& s, discs d, const disc_probing& how)
+    {
+        auto& b = this->b();
+        const auto scene = upload_scene(b, s);
+        serial_backend serial;
+        const auto reference = upload_scene(serial, s);
+        for (std::size_t i = 0; i < d.points.size(); ++i)
+            d.points[i] = glm::vec4(glm::vec3(dvec3(d.points[i]) - scene.layout.center), d.estimates[i].w);
+        const auto f = probe_on(b, scene, d, how);
+        if (b.caps().exact_division && b.caps().exact_sqrt) {
+            const auto expected = probe_on(serial, reference, d, how);
+            EXPECT_EQ(count_different_bits(f.points, expected.points), 0u);
+            EXPECT_EQ(count_different_bits(f.cover, expected.cover), 0u);
+        }
+        return f;
+    }
+    /// The largest error of the shares, and by how much the mean of estimates that are divided by them is too high, of
+    /// random discs of 0.2 m on a convex surface.
+    std::pair<double, double> errors(const scene& s, const std::vector<glm::dvec2>& corners)
+    {
+        random_source u(7);
+        double largest = 0, most_bias = 0;
+        for (const auto& f : filters) {
+            discs d;
+            std::vector<double> expected;
+            for (int i = 0; i < 150; ++i) {
+                const glm::dvec2 p(0.01 + 0.98 * static_cast<double>(u()), 0.01 + 0.98 * static_cast<double>(u()));
+                bool inside = true;
+                for (std::size_t c = 0; c < corners.size(); ++c) {
+                    const auto along = glm::normalize(corners[(c + 1) % corners.size()] - corners[c]),
+                               from = p - corners[c];
+                    inside = inside && along.x * from.y - along.y * from.x > 0.005;
+                }
+                if (!inside)
+                    continue;
+                d.add({p.x, 0, p.y}, {0, 1, 0}, 0.2);
+                expected.push_back(part_by_lines(corners, p, 0.2).share[static_cast<int>(f.kind)]);
+            }
+            const auto found = probe(s, d, {f.kind, 0.5f});
+            double sum = 0;
+            for (std::size_t i = 0; i < expected.size(); ++i) {
+                const auto& c = found.cover[i];
+                EXPECT_EQ(c.y, 1.0f);
+                EXPECT_EQ(found.points[i].w, d.estimates[i].w) << "nothing cuts the disc down";
+                if (expected[i] > 1 - 1e-9) {
+                    EXPECT_EQ(c.x, 1.0f) << "what is whole stays as it is";
+                }
+                largest = std::max(largest, std::abs(static_cast<double>(c.x) - expected[i]));
+                sum += expected[i] / static_cast<double>(c.x);
+            }
+            most_bias = std::max(most_bias, std::abs(sum / static_cast<double>(expected.size()) - 1));
+        }
+        return {largest, most_bias};
+    }
+};
+TYPED_TEST_SUITE_P(probed_edges);
+
+TYPED_TEST_P(probed_edges, are_those_of_a_square_of_any_kind)
+{
+    const std::vector<glm::dvec2> corners{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    double largest = 0, bias = 0;
+    const auto check = [&](const scene& s, const char* of) {
+        const auto [error, mean] = this->errors(s, corners);
+        largest = std::max(largest, error);
+        bias = std::max(bias, mean);
+        EXPECT_LT(error, 0.1) << of;
+        EXPECT_LT(mean, 0.01) << of;
+    };
+    for (const auto floor : all_kinds) {
+        check(square_of(floor), "a free square");
+        for (const auto walls : all_kinds)
+            check(room_of(floor, walls), "a room");
+    }
+    this->report("A9_probes", "largest error of a share:", largest);
+    this->report("A9_probes_bias", "of the mean of estimates divided by them:", bias);
+}
+
+TYPED_TEST_P(probed_edges, are_those_of_a_disk)
+{
+    scene s = empty_scene({0.5, 1.5, 0.5});
+    s.disks.push_back({{0.5, 0, 0.5}, {0, 1, 0}, 0.5, 0});
+    std::vector<glm::dvec2> corners;
+    for (int i = 0; i < 100; ++i)
+        corners.emplace_back(0.5 + 0.5 * std::cos(i * M_PI / 50), 0.5 + 0.5 * std::sin(i * M_PI / 50));
+    const auto [error, mean] = this->errors(s, corners);
+    EXPECT_LT(error, 0.1);
+    EXPECT_LT(mean, 0.01);
+}
+
+TYPED_TEST_P(probed_edges, discs_end_where_the_floor_goes_on_behind_a_wall)
+{
+    // A wall of 0.1 m across the floor; and one on the floor's edge, behind which there is nothing.
+    for (const auto kind : all_kinds)
+        for (const bool goes_on : {true, false}) {
+            scene s = empty_scene({0.5, 1.5, 0.5});
+            const double end = goes_on ? 1 : 0.1;
+            add_rectangle(s, kind, {-1, 0, -1}, {0, 0, 2}, {1 + end, 0, 0});
+            s.boxes.push_back({{0, 0, -1}, {0.1, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
+            discs d;
+            random_source u(3);
+            for (int i = 0; i < 100; ++i)
+                d.add({-0.05, 0, static_cast<double>(u()) - 0.5}, {0, 1, 0}, 0.3);
+            const auto found = this->probe(s, d, {filter_kind::constant, 0.5f});
+            const auto kept = this->probe(s, d, {filter_kind::constant, 0.5f, false});
+            double share = 0;
+            for (std::size_t i = 0; i < d.points.size(); ++i) {
+                const double radius = std::sqrt(static_cast<double>(found.points[i].w));
+                EXPECT_EQ(kept.points[i].w, d.estimates[i].w) << "it must not be cut down";
+                if (goes_on) {
+                    EXPECT_GT(radius, 0.92 * 0.149);
+                    EXPECT_LT(radius, 0.153) << "not beyond the wall, whichever way the rays go";
+                } else {
+                    EXPECT_EQ(found.points[i].w, d.estimates[i].w);
+                }
+                const double known = part_by_lines({{-1, -1}, {0, -1}, {0, 1}, {-1, 1}}, {-0.05, 0}, radius).share[0];
+                EXPECT_NEAR(found.cover[i].x, known, 0.1);
+                share += static_cast<double>(found.cover[i].x) / known / static_cast<double>(d.points.size());
+            }
+            EXPECT_NEAR(share, 1, 0.02);
+        }
+}
+
+TYPED_TEST_P(probed_edges, discs_are_no_wider_than_a_leg)
+{
+    // Legs of 0.1 m; the discs are ten times as wide.
+    scene s = empty_scene({0.5, 1.5, 0.5});
+    s.boxes.push_back({{0, -2, -0.05}, {0.1, 0, 0}, {0, 4, 0}, {0, 0, 0.1}, 0});
+    s.cylinders.push_back({{1, -2, 0}, {1, 2, 0}, 0.05, 0});
+    discs d;
+    random_source u(4);
+    for (int i = 0; i < 200; ++i)
+        d.add(
+            {i < 100 ? 0 : 0.95, static_cast<double>(u()) - 0.5, i < 100 ? 0.06 * static_cast<double>(u()) - 0.03 : 0},
+            {-1, 0, 0}, 0.5);
+    const auto found = this->probe(s, d, {filter_kind::silverman, 0.5f});
+    for (std::size_t i = 0; i < d.points.size(); ++i) {
+        const double radius = std::sqrt(static_cast<double>(found.points[i].w));
+        EXPECT_GT(radius, 0.07);
+        EXPECT_LT(radius, 0.13);
+        EXPECT_GT(found.cover[i].x, 0.55f);
+    }
+}
+
+TYPED_TEST_P(probed_edges, go_on_in_a_tube_but_not_in_a_can)
+{
+    // On the floor around a tube that stands on it: its inside is floor, too, unless it is closed.
+    for (const bool closed : {false, true}) {
+        scene s = empty_scene({0.5, 1.5, 0.5});
+        add_rectangle(s, made_of::polygons, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0});
+        s.cylinders.push_back({{0, 0, 0}, {0, 0.3, 0}, 0.5, 0});
+        if (closed)
+            s.disks.push_back({{0, 0.3, 0}, {0, 1, 0}, 0.5, 0});
+        discs d;
+        for (int i = 0; i < 100; ++i)
+            d.add({0.52 * std::cos(i), 0, 0.52 * std::sin(i)}, {0, 1, 0}, 0.2);
+        const auto found = this->probe(s, d, {filter_kind::constant, 0.5f});
+        for (const auto& c : found.cover) {
+            if (closed) {
+                EXPECT_NEAR(c.x, 0.5, 0.2);
+            } else {
+                EXPECT_EQ(c.x, 1.0f);
+            }
+        }
+    }
+}
+
+TYPED_TEST_P(probed_edges, make_even_light_even_up_to_edges_and_walls)
+{
+    // Even light on the floor alone; estimates near its edges, with radii of their own and with given ones.
+    auto& b = this->b();
+    constexpr uint side = 200, photons = side * side; // one in each small square
+    double worst = 0, without = 1;
+    for (const auto kind : all_kinds)
+        for (const bool walled : {false, true}) {
+            const auto s = walled ? room_of(kind, kind) : square_of(kind);
+            const auto scene = upload_scene(b, s);
+            random_source u(6);
+            const auto map_of = [&] {
+                oriented_set set;
+                set.photons.g = make_grid(scene.layout.low, scene.layout.high, {24, 1, 24});
+                for (uint i = 0; i < photons; ++i) {
+                    set.photons.positions.emplace_back(
+                        glm::vec3(dvec3((static_cast<double>(i % side) + static_cast<double>(u())) / side, 0,
+                                      (static_cast<double>(i / side) + static_cast<double>(u())) / side)
+                            - scene.layout.center),
+                        0.0f);
+                    set.photons.powers.emplace_back(1.0f / photons);
+                    set.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
+                    set.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+                }
+                auto p = upload_photons(b, set.photons);
+                p.directions = b.upload(std::span<const glm::vec4>(set.directions));
+                p.normals = b.upload(std::span<const glm::vec4>(set.normals));
+                return sorted_map(b, std::move(p), set.photons.g);
+            };
+            const auto light = map_of(), first = map_of();
+            std::vector<glm::vec4> points, normals;
+            for (int i = 0; i < 800; ++i) { // a frame of 0.04 m along the edges
+                dvec3 p(0.04 * static_cast<double>(u()), 0, static_cast<double>(u()));
+                for (int turn = i % 4; turn > 0; --turn)
+                    p = dvec3(p.z, 0, 1 - p.x);
+                points.emplace_back(glm::vec3(p - scene.layout.center), 1.0f);
+                normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+            }
+            const auto at = b.upload(std::span<const glm::vec4>(points)),
+                       up = b.upload(std::span<const glm::vec4>(normals));
+            const auto mean = [&](edge_correction edges, bool given) {
+                estimate_sources<typename TestFixture::B> from;
+                from.scene = &scene;
+                from.map = &light;
+                from.search = {.k = 400, .max_radius = 0.3f, .filter = filter_kind::silverman};
+                from.search.leaks = {.side = true, .min_cosine = 0.5f};
+                from.edges = edges;
+                if (given) {
+                    from.radii = {&first, 400};
+                    from.share2 = 0.7;
+                }
+                point_estimates<typename TestFixture::B> e(
+                    b, from, at, up, running_estimate_kind::none, step_size::largest);
+                while (!e.advance()) {}
+                double sum = 0;
+                for (const auto& v : b.download(e.take().irradiance))
+                    sum += static_cast<double>(v.x);
+                return sum / static_cast<double>(points.size());
+            };
+            for (const bool given : {false, true}) {
+                worst = std::max(worst, std::abs(mean(edge_correction::probes, given) - 1));
+                without = std::min(without, mean(edge_correction::none, given));
+            }
+        }
+    EXPECT_LT(worst, 0.01);
+    EXPECT_LT(without, 0.85);
+    this->report("A9_probes_light", "mean of even light near edges, off by:", worst);
+}
+
+REGISTER_TYPED_TEST_SUITE_P(probed_edges, are_those_of_a_square_of_any_kind, are_those_of_a_disk,
+    make_even_light_even_up_to_edges_and_walls, discs_end_where_the_floor_goes_on_behind_a_wall,
+    discs_are_no_wider_than_a_leg, go_on_in_a_tube_but_not_in_a_can);
+
+} // namespace photongrid::testing
