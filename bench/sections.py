@@ -569,19 +569,20 @@ def panes(backends, quick):
                 "ball": {"type": "sphere_light", "center": at, "radius": edge / 2, "power": 30}}[kind]
 
     def mean(surface, kind, behind_pane, *command):
-        box = {"type": "box", "corner": [-2, 0.9, -2], "edge_u": [4, 0, 0], "edge_v": [0, 0, 4],
+        box = {"type": "box", "corner": [-0.6, 0.9, -1.3], "edge_u": [1.2, 0, 0], "edge_v": [0, 0, 1.2],
                "edge_w": [0, thick, 0], "material": "pane"}
+        has_size = kind in ("rectangle", "ball")  # rays meet it by chance behind the pane
         floor = [[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]]
         with open(f"{WORK}/pane.json", "w", encoding="utf-8") as f:
             json.dump({"photongrid": 1, "name": "pane", "units": {"length": "m", "power": "W"},
-                       "camera": {"position": [0, 0.8, 0.6], "look_at": [0, 0, 0], "vertical_fov": 8},
+                       "camera": {"position": [0, 0.8, 0.6], "look_at": [0, 0, 0], "vertical_fov": 16},
                        "materials": {"pane": {"type": "glass", "index_of_refraction": index},
                                      # dark: what it sends back to the pane counts next to nothing
-                                     "floor": {"reflectance": 0.1, **surfaces[surface]}},
+                                     "floor": {"reflectance": 0.02, **surfaces[surface]}},
                        "shapes": [{"type": "polygon", "vertices": floor, "material": "floor"}] + [box] * behind_pane,
                        "lights": [light(kind, lamp if behind_pane else lamp - nearer)],
                        "render": {"size": [8, 8], "photons": 20000 if quick else 200000, "k": 200, "max_radius": 0.05,
-                                  "spp": 16, "light_samples": 4, "passes": 4}}, f)
+                                  "spp": 512 if has_size and not quick else 4, "light_samples": 1, "passes": 16}}, f)
         said(PROGRAM, *command, f"{WORK}/pane.json", "--quiet", "-o", f"{WORK}/pane.pfm")
         with open(f"{WORK}/pane.pfm", "rb") as f:
             return statistics.mean(struct.unpack("<192f", f.read()[-768:]))
