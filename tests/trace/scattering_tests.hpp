@@ -277,8 +277,9 @@ namespace {
     {
         const auto& m = materials[2];
         constexpr float faint = 0.04f;
-        constexpr double least = 0.25 * (1 - double{faint});
         for (const double distance : {3.0, 0.7}) {
+            const double inside = distance < 1 ? m.index_of_refraction * m.index_of_refraction : 1,
+                         least = 0.25 * (1 - double{faint} * inside); // radiance within glass is larger
             std::vector<dvec3> origins, ways, outwards;
             aim(origins, ways, outwards, distance);
             const auto e = step(ball_of(m, {1.5, 0.5, 1}), origins, ways, 0, 0, faint);

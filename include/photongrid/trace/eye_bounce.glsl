@@ -152,15 +152,27 @@ Branch split_branch(float share)
     return b;
 }
 
+// The largest factor between light that the surface sends here and that at the eye. Within glass radiance is larger by
+// the square of its index, and the throughput smaller, though no light is lost.
+float brightness_at(Surface s)
+{
+    float brightness = largest3(vec3(throughput));
+    if (GLASS && s.material.kind == GLASS_SURFACE && !s.outside) {
+        precise float outside = brightness * s.material.index_of_refraction * s.material.index_of_refraction;
+        brightness = outside;
+    }
+    return brightness;
+}
+
 // Sampled with its probability, a 4 % reflection that reaches a lamp is a firefly. Sample the rarer branch more often
-// as throughput falls, up to 1/4, and weight it accordingly. `what`: of the random number.
-Branch sampled_branch(uint i, uint what, float share)
+// as `brightness` falls, up to 1/4, and weight it accordingly. `what`: of the random number.
+Branch sampled_branch(uint i, uint what, float share, float brightness)
 {
     Branch b;
     b.first = true; // no other branch
     b.share = 1.0f;
     if (!(share >= 1.0f)) {
-        precise float least = 0.25f - 0.25f * max(max(throughput.x, throughput.y), throughput.z);
+        precise float least = 0.25f - 0.25f * min(brightness, 1.0f);
         float probability = min(max(share, least), 1.0f - least);
         b.first = stratified_number(i, what) < probability;
         precise float corrected = b.first ? share / probability : (1.0f - share) / (1.0f - probability);
@@ -170,11 +182,11 @@ Branch sampled_branch(uint i, uint what, float share)
 }
 
 // The branch that this pass follows, at a split or beyond the last one.
-Branch branch_of(uint i, uint what, float share)
+Branch branch_of(uint i, uint what, float share, float brightness)
 {
     if (may_split())
         return split_branch(share);
-    return sampled_branch(i, what, share);
+    return sampled_branch(i, what, share, brightness);
 }
 
 // The same where a share of 0 or 1 leaves no choice.
@@ -184,7 +196,7 @@ Branch branch_if_any(uint i, uint what, float share)
     b.first = share > 0.0f;
     b.share = 1.0f;
     if (share > 0.0f && share < 1.0f)
-        b = branch_of(i, what, share);
+        b = branch_of(i, what, share, largest3(vec3(throughput)));
     return b;
 }
 
@@ -201,9 +213,8 @@ const uint SURELY_FOLLOWED = 8u; // surfaces
 
 // Russian roulette (Arvo and Kirk, Particle Transport and Image Synthesis, 1990): past some surfaces faint rays end by
 // chance, and those that go on stand for them.
-bool ends_by_chance(uint i, uint hits)
+bool ends_by_chance(uint i, uint hits, float brightness)
 {
-    float brightness = largest3(vec3(throughput));
     if (hits <= SURELY_FOLLOWED || !(brightness < 1.0f))
         return false;
     if (!(stratified_number(i, FAINT + hits) < brightness))
@@ -239,7 +250,7 @@ Branch coat_branch(uint i, uint hits, Surface s)
     Coat coat = coat_of(s.number);
     precise float passed = passes_coat(coat, -dot3(s.shading, s.d));
     precise float reflected = 1.0f - passed;
-    Branch b = branch_of(i, REFLECTS + hits, reflected);
+    Branch b = branch_of(i, REFLECTS + hits, reflected, brightness_at(s));
     precise float weight = b.first ? (reflected > 0.0f ? b.share / reflected : 0.0f) : b.share / coat.mean_passed;
     b.share = weight;
     return b;
@@ -329,7 +340,7 @@ void scatter(uint i, Hit hit, Surface s, float met, uint behind)
     }
     float branch_share = 1.0f;
     if (GLASS && is_glass(s.material)) {
-        Branch b = branch_of(i, REFLECTS + hits, facet.f.reflected);
+        Branch b = branch_of(i, REFLECTS + hits, facet.f.reflected, brightness_at(s));
         s = leaving_by(s, way_of(s, b.first));
         branch_share = b.share;
         if (goes_straight_on(s)) {
@@ -384,10 +395,6 @@ void kernel(uint i)
     if (on_mesh)
         hit = mesh_hit(number);
     uint hits = uint(direction.w);
-    if (ends_by_chance(i, hits)) {
-        point.w = -1.0f;
-        return;
-    }
     if (MEDIA)
         attenuate(hit.t < 0.0f ? 3.0e38f : hit.t);
     if (hit.t < 0.0f) {
@@ -431,6 +438,10 @@ void kernel(uint i)
             pass_clear(hit, d, vec3(met, met, met));
             return;
         }
+    }
+    if (ends_by_chance(i, hits, brightness_at(s))) {
+        point.w = -1.0f;
+        return;
     }
     scatter(i, hit, s, met, behind);
 }
