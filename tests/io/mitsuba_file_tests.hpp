@@ -501,7 +501,9 @@ namespace {
             {"<shape type=\"disk\"><bsdf type=\"null\"/></shape>",
                 "s.xml:3:20: note: bsdf \"null\": its surfaces are left out"},
             {"<shape type=\"disk\"><medium name=\"interior\" type=\"homogeneous\"/></shape>",
-                "s.xml:3:1: note: the media inside and outside of shapes are left out"},
+                "s.xml:3:20: note: medium \"homogeneous\": absorbs light, but does not scatter it"},
+            {"<shape type=\"disk\"><medium name=\"exterior\" type=\"homogeneous\"/></shape>",
+                "s.xml:3:1: note: the media of shapes are left out but for those inside that are homogeneous"},
             {"<shape type=\"disk\"><bsdf type=\"plastic\"><float name=\"ext_ior\" value=\"1.33\"/></bsdf></shape>",
                 "s.xml:3:20: note: bsdf \"plastic\": the outside has no air: the index is that of both sides' ratio"},
             {"<sensor type=\"thinlens\"/>", "s.xml:3:1: note: a second sensor is left out"},
@@ -519,7 +521,21 @@ namespace {
         EXPECT_TRUE(mitsuba_scene(xml_ball, {.strict = true}).notes.empty());
         const auto bare = notes_of(parse_mitsuba("s.xml", xml_scene(xml_ball), {.strict = true}));
         ASSERT_EQ(bare.size(), 2u);
-        EXPECT_EQ(bare[0], "s.xml: note: the file has no light; a white environment of radiance 1 is added");
+        EXPECT_EQ(bare[0], "s.xml: note: the file has no light; a sky with a soft bright patch is added");
+    }
+
+    TEST(mitsuba_file, media_inside_of_shapes_absorb)
+    {
+        const std::string ink = "<medium name=\"interior\" type=\"homogeneous\"><rgb name=\"sigma_t\" value=\"1,2,4\"/>"
+                                "<rgb name=\"albedo\" value=\"0\"/><float name=\"scale\" value=\"0.5\"/></medium>";
+        for (const auto* bsdf : {"dielectric", "null"}) {
+            const auto ball = "<shape type=\"sphere\">" + ink + "<bsdf type=\"" + bsdf + "\"/></shape>";
+            const auto s = mitsuba_scene(ball, {.unit = 0.01}).scene;
+            const auto& m = s.materials.at(s.spheres.at(0).material);
+            expect_near(m.absorption, {50, 100, 200});
+            EXPECT_EQ(m.kind, material_kind::glass);
+            EXPECT_EQ(m.index_of_refraction == 1, bsdf == std::string("null"));
+        }
     }
 
     TEST(mitsuba_file, refuses_with_the_place)

@@ -278,7 +278,13 @@ namespace {
             {"Scale 1 2 1\nShape \"sphere\"\n",
                 "s.pbrt:4:1: note: shape \"sphere\": drawn as 16384 triangles, since it is stretched, or has a texture "
                 "or an alpha"},
-            {"MakeNamedMedium \"fog\"\n", "s.pbrt:3:1: note: medium \"fog\": is left out; light crosses it unchanged"},
+            {"MakeNamedMedium \"fog\" \"string type\" \"cloud\"\nMediumInterface \"fog\" \"\"\n",
+                "s.pbrt:3:1: note: medium \"fog\": is left out; light crosses it unchanged"},
+            {"MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1]\n"
+             "MediumInterface \"milk\" \"\"\n",
+                "s.pbrt:3:1: note: medium \"milk\": absorbs light, but does not scatter it"},
+            {"MakeNamedMedium \"fog\" \"string type\" \"cloud\"\nMediumInterface \"\" \"fog\"\n",
+                "s.pbrt:5:1: note: the media outside of shapes are left out"},
             {"LightSource \"goniometric\"\n",
                 "s.pbrt:3:1: note: light \"goniometric\": shines evenly in all directions"},
             {"Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\nMaterial \"diffuse\" \"texture "
@@ -303,7 +309,32 @@ namespace {
         EXPECT_TRUE(pbrt_scene(ball, "Camera \"perspective\"\n", {.strict = true}).notes.empty());
         const auto no_camera = notes_of(parse_pbrt("s.pbrt", "WorldBegin\n" + ball, {.strict = true}));
         ASSERT_EQ(no_camera.size(), 2u); // neither replaced nor left out, so that it is not refused
-        EXPECT_EQ(no_camera[0], "s.pbrt: note: the file has no light; a white environment of radiance 1 is added");
+        EXPECT_EQ(no_camera[0], "s.pbrt: note: the file has no light; a sky with a soft bright patch is added");
+    }
+
+    TEST(pbrt_file, media_inside_of_shapes_absorb)
+    {
+        const std::string ink = "MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 2 4] "
+                                "\"rgb sigma_s\" [0 0 0] \"float scale\" 0.5\nMediumInterface \"ink\" \"\"\n";
+        const auto materials_of = [&](const std::string& material, const import_settings& how = {}) {
+            return pbrt_scene(ink + material + ball + "MediumInterface \"\" \"\"\nTranslate 5 0 0\n" + ball,
+                "Camera \"perspective\"\n", how)
+                .scene.materials;
+        };
+        const auto glass = materials_of("Material \"dielectric\" \"float eta\" 1.5\n", {.strict = true, .unit = 0.01});
+        ASSERT_EQ(glass.size(), 2u);
+        EXPECT_EQ(glass[0].absorption, dvec3(0)) << "of the second ball";
+        expect_near(glass[1].absorption, {50, 100, 200});
+        EXPECT_EQ(glass[1].index_of_refraction, 1.5);
+        const auto clear = materials_of("Material \"interface\"\n");
+        ASSERT_EQ(clear.size(), 1u);
+        expect_near(clear[0].absorption, {0.5, 1, 2});
+        EXPECT_EQ(clear[0].index_of_refraction, 1);
+        EXPECT_EQ(materials_of("Material \"diffuse\"\n").size(), 1u) << "it has no inside";
+        EXPECT_NE(refusal_by([] {
+            parse_pbrt("s.pbrt", "WorldBegin\nMediumInterface \"none\" \"\"\n" + ball);
+        }).find("the medium \"none\" of this shape is not defined"),
+            std::string::npos);
     }
 
     TEST(pbrt_file, refuses_with_the_place)

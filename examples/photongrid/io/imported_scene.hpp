@@ -25,6 +25,7 @@ struct import_settings {
     std::string camera_from{};
     /// A picture of light from everywhere, in place of the scene's environments; empty: none. Likewise.
     std::string environment{};
+    bool z_up = false; ///< z is up in the file: the scene is turned so that y is
 };
 
 /// Something in a file that photongrid does not have: what stands in its place, or that it is left out.

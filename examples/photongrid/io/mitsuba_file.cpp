@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 
 namespace photongrid {
@@ -166,7 +167,7 @@ namespace mitsuba {
                 const auto to_world = outer * o.transform("to_world");
                 if (o.type == "instance" || o.type == "merge")
                     return add_instance(o, to_world);
-                note_medium(o);
+                const auto absorbed = absorbed_inside(o);
                 const auto bsdfs = o.all_of("bsdf");
                 if (bsdfs.size() > 1)
                     builder_.note(o.place, o.said() + " with several bsdfs: the first one is drawn");
@@ -174,20 +175,43 @@ namespace mitsuba {
                 for (const auto* e : o.all_of("emitter"))
                     if (add_emitter(o, *e->target, bsdf, to_world))
                         return;
-                const auto index = materials_.index_of(bsdf);
-                if (!index)
-                    return;
-                add_surface(o, to_world, *index);
+                const auto index = materials_.with_absorption(o.place, materials_.index_of(bsdf), absorbed);
+                if (index)
+                    add_surface(o, to_world, *index);
             }
 
-            void note_medium(const object& o)
+            /// What the medium inside a shape absorbs of light by the unit of length. Notes what is left out.
+            dvec3 absorbed_inside(const object& o)
             {
-                bool is_in_one = false;
-                for (const auto* tag : {"medium", "subsurface"})
-                    is_in_one = !o.all_of(tag).empty() || is_in_one;
-                if (is_in_one && !noted_medium_)
-                    builder_.note(o.place, "the media inside and outside of shapes are left out");
-                noted_medium_ = noted_medium_ || is_in_one;
+                dvec3 absorbed(0);
+                bool left_out = !o.all_of("subsurface").empty();
+                for (const auto* c : o.all_of("medium"))
+                    if (c->name == "interior" && c->target->type == "homogeneous")
+                        absorbed = absorbed_by(*c->target);
+                    else
+                        left_out = true;
+                if (left_out && !noted_medium_)
+                    builder_.note(
+                        o.place, "the media of shapes are left out but for those inside that are homogeneous");
+                noted_medium_ = noted_medium_ || left_out;
+                return absorbed;
+            }
+
+            dvec3 absorbed_by(const object& medium)
+            {
+                if (const auto before = media_.find(&medium); before != media_.end())
+                    return before->second;
+                const auto albedo = medium.find("albedo") != nullptr ? values_.emission(medium, "albedo") : dvec3(0.75);
+                const double scale = values_.number(medium, "scale", 1).factor.x;
+                const auto absorbed
+                    = glm::max(values_.emission(medium, "sigma_t") * scale * (dvec3(1) - albedo), dvec3(0));
+                if (albedo != dvec3(0))
+                    builder_.note(medium.place, medium.said() + ": absorbs light, but does not scatter it");
+                medium.all_of("phase");
+                medium.find("has_spectral_extinction");
+                medium.find("sample_emitters");
+                medium.note_unused(builder_.log());
+                return media_.emplace(&medium, absorbed).first->second;
             }
 
             /// The shapes of the groups that an instance places.
@@ -333,6 +357,7 @@ namespace mitsuba {
             shape_reader shapes_reader_{builder_};
             std::set<const object*> drawn_; ///< that something is made of
             std::size_t shapes_ = 0;
+            std::map<const object*, dvec3> media_; ///< what they absorb
             bool noted_medium_ = false, is_in_group_ = false;
         };
     } // namespace

@@ -120,12 +120,9 @@ namespace pbrt {
             {
                 if (++shapes_ > max_shapes)
                     fail_at(s.place, "more than 2^22 shapes, with all places of objects");
-                if (s.in_medium && !noted_medium_)
-                    builder_.note(s.place, "the media inside and outside of shapes are left out");
-                noted_medium_ = noted_medium_ || s.in_medium;
                 if (s.area_light && add_emitter(s, to_world))
                     return;
-                const auto index = materials_.index_of(s.material, s.place);
+                const auto index = materials_.index_of(s);
                 if (!index)
                     return;
                 const auto material = with_alpha(s, *index);
@@ -332,7 +329,6 @@ namespace pbrt {
             shape_reader shapes_reader_{builder_};
             std::set<std::string> drawn_objects_;
             std::size_t shapes_ = 0;
-            bool noted_medium_ = false;
         };
     } // namespace
 } // namespace pbrt

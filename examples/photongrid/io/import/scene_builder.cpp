@@ -1,4 +1,5 @@
 #include <photongrid/io/import/checked_parts.hpp>
+#include <photongrid/io/import/default_view.hpp>
 #include <photongrid/io/import/scene_builder.hpp>
 #include <photongrid/io/whole_file.hpp>
 
@@ -34,6 +35,10 @@ void scene_builder::set_unit(double metres)
 {
     unit_ = settings_.unit.value_or(metres);
     world_ = glm::dmat4(unit_);
+    if (settings_.z_up) {
+        world_[1] = {0, 0, -unit_, 0};
+        world_[2] = {0, unit_, 0, 0};
+    }
     world_[3][3] = 1;
 }
 
@@ -47,7 +52,8 @@ void scene_builder::set_camera(
     made_.render.output.width = width;
     made_.render.output.height = height;
     if (glm::dot(glm::cross(c.forward, c.up), c.right) < 0)
-        world_[2][2] = -world_[2][2];
+        for (int column = 0; column < 3; ++column)
+            world_[column][2] = -world_[column][2];
     auto& to = made_.camera;
     to.position = point(c.position);
     const double length = glm::length(direction(c.forward));
@@ -98,9 +104,23 @@ std::uint32_t scene_builder::with_opacity(
     changed.opacity *= opacity;
     if (texture.map)
         changed.opacity_texture = texture;
-    const auto same = std::find(made_.materials.begin(), made_.materials.end(), changed);
+    return add_once(place, std::move(changed));
+}
+
+std::uint32_t scene_builder::with_absorption(const source_place& place, std::uint32_t m, const dvec3& absorbed)
+{
+    if (made_.materials[m].kind != material_kind::glass)
+        return m;
+    auto changed = made_.materials[m];
+    changed.absorption = absorbed / unit_;
+    return add_once(place, std::move(changed));
+}
+
+std::uint32_t scene_builder::add_once(const source_place& place, material m)
+{
+    const auto same = std::find(made_.materials.begin(), made_.materials.end(), m);
     return same != made_.materials.end() ? static_cast<std::uint32_t>(same - made_.materials.begin())
-                                         : add_material(place, std::move(changed));
+                                         : add_material(place, std::move(m));
 }
 
 std::optional<texture_use> scene_builder::texture(
@@ -223,16 +243,21 @@ bool scene_builder::add_disk(
 
 void scene_builder::add_default_camera()
 {
+    const auto chosen = default_camera(made_);
+    made_.camera = chosen.view;
+    log_.say(file_,
+        chosen.is_inside ? "the file has no camera, and no light gets out of the scene; one in its corner is added"
+                         : "the file has no camera; one that sees the whole scene is added");
+}
+
+void scene_builder::note_flat_along_z()
+{
+    const auto ending = ending_of(*file_.file);
     const auto b = bounds_of(made_);
-    const dvec3 middle = 0.5 * (b.low + b.high);
-    const double radius = std::max(0.5 * glm::length(b.high - b.low), 1e-6);
-    auto& c = made_.camera;
-    c.vertical_fov = 40;
-    // All of a ball about the scene is in the picture.
-    const double distance = radius / std::sin(glm::radians(c.vertical_fov) / 2);
-    c.look_at = middle;
-    c.position = middle + distance * glm::normalize(dvec3(0.4, 0.35, 1));
-    log_.say(file_, "the file has no camera; one that sees the whole scene is added");
+    const dvec3 size = b.high - b.low;
+    if (!settings_.z_up && (ending == ".obj" || ending == ".ply") && size.z > 0
+        && 2 * size.z < std::min(size.x, size.y))
+        log_.say(file_, "the scene is flat along z; if z is up in it, --z-up turns it");
 }
 
 void scene_builder::choose_settings()
@@ -244,7 +269,8 @@ void scene_builder::choose_settings()
     r.estimate.k = 500; // fewer leave blotches on walls
     r.estimate.max_radius = std::clamp(0.1 * glm::length(b.high - b.low), 1e-6, max_length);
     r.view.spp = 1;
-    r.view.light_samples = 2;
+    const auto lights = static_cast<std::uint32_t>(std::min<std::size_t>(count_lights(made_), 16));
+    r.view.light_samples = std::clamp(16 / std::max(lights, 1u), 2u, 8u); // fewer leave a sky in a window noisy
     if (depth_)
         r.view.depth = r.map.photon_depth = *depth_; // of eye rays and of photons: together they may have more
     r.output.passes = 16;                            // about 20 s on two cores for 512 x 512 pixels
@@ -252,15 +278,20 @@ void scene_builder::choose_settings()
 
 imported_scene scene_builder::finish()
 {
-    if (count_shapes(made_) == 0)
+    if (!has_surfaces(made_))
         fail_at(file_, "the scene has no shape that can be drawn");
     add_environment_light();
     if (count_lights(made_) == 0 && settings_.environment.empty()) {
-        made_.environment_lights.push_back({.name = "sky", .file = "", .map = nullptr, .radiance = dvec3(1)});
-        log_.say(file_, "the file has no light; a white environment of radiance 1 is added");
+        made_.environment_lights.push_back({.name = "sky",
+            .file = "",
+            .map = std::make_shared<const environment_map>(default_sky()),
+            .radiance = dvec3(1)});
+        log_.say(file_, "the file has no light; a sky with a soft bright patch is added");
     }
-    if (!has_camera_ && settings_.camera_from.empty())
+    if (!has_camera_ && settings_.camera_from.empty()) {
         add_default_camera();
+        note_flat_along_z();
+    }
     choose_settings();
     if (const auto bad = detail::unresolved_in(detail::extent_of(made_)))
         fail_at(bad->place.list == shape_kind<sphere>::list ? sphere_places_[bad->place.index] : file_,

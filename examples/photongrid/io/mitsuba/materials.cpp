@@ -43,6 +43,28 @@ std::optional<std::uint32_t> material_reader::index_of(const child* bsdf)
     return index;
 }
 
+std::optional<std::uint32_t> material_reader::with_absorption(
+    const source_place& place, std::optional<std::uint32_t> m, const dvec3& absorbed)
+{
+    if (absorbed == dvec3(0))
+        return m;
+    if (!m) {
+        material clear{.name = "medium"};
+        clear.kind = material_kind::glass;
+        clear.reflectance = dvec3(1);
+        clear.priority = 0;
+        clear.index_of_refraction = 1;
+        clear.absorption = absorbed / builder_.unit();
+        m = builder_.add_once(place, clear);
+        glass_.insert(*m);
+        return m;
+    }
+    const auto made = builder_.with_absorption(place, *m, absorbed);
+    if (refracts(*m))
+        glass_.insert(made);
+    return made;
+}
+
 bool material_reader::is_black(const child* bsdf)
 {
     const auto* o = bsdf != nullptr ? bsdf->target : nullptr;

@@ -18,6 +18,10 @@ public:
     /// Its index in the scene; none for `null`, whose surfaces are not drawn. `bsdf`: null for that of shapes without
     /// one.
     std::optional<std::uint32_t> index_of(const child* bsdf);
+    /// The same, if it is glass, with what its inside absorbs of light by the unit of length; without a surface, if it
+    /// absorbs any, glass of the index of refraction 1.
+    std::optional<std::uint32_t> with_absorption(
+        const source_place& place, std::optional<std::uint32_t> m, const dvec3& absorbed);
     /// Whether it is black, as the surfaces of lamps are here.
     static bool is_black(const child* bsdf);
     /// Whether light enters bodies of it, so that it matters which side is outside.

@@ -75,7 +75,7 @@ struct shape_entity : entity {
     material_reference material{};
     std::optional<std::size_t> area_light{}; ///< index into description::area_lights
     bool reverse_orientation = false;
-    bool in_medium = false; ///< a medium is on one side of it
+    std::string inside{}, outside{}; ///< names of the media on its sides; empty: none
 };
 
 struct object_instance {
@@ -91,6 +91,7 @@ struct description {
     std::vector<entity> materials; ///< the first one is that of shapes before any Material
     std::map<std::string, std::size_t> named_materials;
     std::map<std::string, entity> textures; ///< by "name/float" or "name/spectrum": these are apart
+    std::map<std::string, entity> media;
     std::vector<entity> area_lights, lights;
     std::vector<shape_entity> shapes;
     std::map<std::string, std::vector<shape_entity>> objects;

@@ -32,6 +32,55 @@ std::optional<std::uint32_t> material_reader::index_of(const material_reference&
     return index;
 }
 
+material_reader::medium material_reader::medium_of(const std::string& name, const source_place& place)
+{
+    if (const auto before = media_.find(name); before != media_.end())
+        return before->second;
+    const auto found = all_.media.find(name);
+    if (found == all_.media.end())
+        fail_at(place, "the medium " + shown_word(name) + " of this shape is not defined");
+    const auto& e = found->second;
+    const auto& p = e.parameters;
+    const auto said = [&](const char* what) { builder_.note(e.place, "medium " + shown_word(name) + what); };
+    medium m;
+    if (e.type != "homogeneous" || (p.find("sigma_a") == nullptr && p.find("sigma_s") == nullptr)) {
+        said(": is left out; light crosses it unchanged");
+    } else {
+        const double scale = p.number("scale", 1);
+        m.absorbed = glm::max(values_.coefficient(e, "sigma_a") * scale, dvec3(0));
+        m.scatters = p.find("sigma_s") == nullptr || values_.coefficient(e, "sigma_s") * scale != dvec3(0);
+        if (m.scatters)
+            said(": absorbs light, but does not scatter it");
+        p.find("g");
+        if (p.find("Le") != nullptr)
+            said(": its light is left out");
+        p.note_unused(builder_.log(), "medium " + shown_word(name));
+    }
+    return media_.emplace(name, m).first->second;
+}
+
+std::optional<std::uint32_t> material_reader::index_of(const shape_entity& s)
+{
+    if (!s.outside.empty() && s.outside != s.inside && !noted_outside_) {
+        builder_.note(s.place, "the media outside of shapes are left out");
+        noted_outside_ = true;
+    }
+    const auto inside = s.inside.empty() || s.inside == s.outside ? medium{} : medium_of(s.inside, s.place);
+    const auto& e = all_.materials[entity_of(s.material, s.place)];
+    const bool is_interface = e.type.empty() || e.type == "none" || e.type == "interface";
+    if (is_interface && inside.absorbed != dvec3(0) && !inside.scatters) {
+        material m{.name = s.inside};
+        m.kind = material_kind::glass;
+        m.reflectance = dvec3(1);
+        m.priority = 0;
+        m.index_of_refraction = 1;
+        m.absorption = inside.absorbed / builder_.unit();
+        return builder_.add_once(e.place, m);
+    }
+    const auto index = index_of(s.material, s.place);
+    return index && inside.absorbed != dvec3(0) ? builder_.with_absorption(s.place, *index, inside.absorbed) : index;
+}
+
 bool material_reader::is_black(const material_reference& m, const source_place& place)
 {
     const auto& e = all_.materials[entity_of(m, place)];
@@ -96,7 +145,7 @@ std::optional<std::uint32_t> material_reader::made(const entity& e, const std::s
     const auto said
         = [&](const std::string& what) { builder_.note(e.place, "material " + shown_word(name) + ": " + what); };
     if (e.type.empty() || e.type == "none" || e.type == "interface") {
-        builder_.note(e.place, "material \"interface\": its surfaces are left out, since media are");
+        builder_.note(e.place, "material \"interface\": its surfaces are left out");
         return std::nullopt;
     }
     if (p.find("normalmap") != nullptr || p.find("displacement") != nullptr)

@@ -20,7 +20,7 @@ namespace {
         glm::dmat4 to_world{1};
         bool moves_start = true; ///< whether transformations change what is drawn: the state at the start time
         bool reverse_orientation = false;
-        bool in_medium = false;
+        std::string inside{}, outside{}; ///< names of media
         material_reference material{};
         std::optional<std::size_t> area_light{};
         std::map<std::string, parameter_list> defaults{}; ///< of Attribute
@@ -312,7 +312,7 @@ namespace {
         void read_shape(token_reader& t, const source_place& place)
         {
             shape_entity s{read_entity(t, place, "a shape's type", "shape"), state_.material, state_.area_light,
-                state_.reverse_orientation, state_.in_medium};
+                state_.reverse_orientation, state_.inside, state_.outside};
             (object_ ? made_.objects[*object_] : made_.shapes).push_back(std::move(s));
         }
         void read_material(token_reader& t, const source_place& place)
@@ -358,8 +358,14 @@ namespace {
         }
         void read_medium(token_reader& t, const source_place& place)
         {
-            const auto e = read_entity(t, place, "a medium's name", "medium");
-            log_.add(place, "medium " + shown_word(e.type) + ": is left out; light crosses it unchanged");
+            const auto name = t.quoted("a medium's name");
+            entity e{.type = "", .place = place, .colors = state_.colors, .to_world = state_.to_world};
+            e.parameters = read_parameters(t);
+            if (const auto found = state_.defaults.find("medium"); found != state_.defaults.end())
+                e.parameters.add_absent(found->second);
+            e.type = e.parameters.text("type", "");
+            if (!made_.media.emplace(name, std::move(e)).second)
+                fail_at(place, "the medium " + shown_word(name) + " is defined twice");
         }
         void read_medium_interface(token_reader& t, const source_place&)
         {
@@ -367,7 +373,8 @@ namespace {
             auto outside = inside;
             if (t.peek() && t.peek()->is == token::kind::quoted)
                 outside = t.quoted("");
-            state_.in_medium = !inside.empty() || !outside.empty();
+            state_.inside = inside;
+            state_.outside = outside;
         }
 
         included_files files_;

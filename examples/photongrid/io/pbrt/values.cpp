@@ -138,6 +138,18 @@ dvec3 value_reader::emission(const entity& e, std::string_view name)
     fail_at(p->place, "found a " + p->type + "; expected rgb, spectrum or blackbody");
 }
 
+dvec3 value_reader::coefficient(const entity& e, std::string_view name)
+{
+    const auto* p = e.parameters.find(name);
+    if (p == nullptr)
+        return dvec3(0);
+    if (p->type == "rgb")
+        return constant_reflectance(e, *p);
+    if (const auto s = spectrum(*p))
+        return {s->at(612), s->at(549), s->at(465)}; // where sRGB's primaries are
+    fail_at(p->place, "found a " + p->type + "; expected rgb or spectrum");
+}
+
 double value_reader::index_of_refraction(const entity& e, std::string_view name, double if_absent)
 {
     const auto* p = e.parameters.find(name);

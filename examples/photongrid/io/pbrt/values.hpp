@@ -29,6 +29,8 @@ public:
     varying number(const entity& e, std::string_view name, double if_absent);
     /// The colour of a light; one that is a spectrum has the luminance 1.
     dvec3 emission(const entity& e, std::string_view name);
+    /// The coefficient of a medium, by the unit of length.
+    dvec3 coefficient(const entity& e, std::string_view name);
     /// The index of refraction of a dielectric: float or a spectrum, at 587.6 nm.
     double index_of_refraction(const entity& e, std::string_view name, double if_absent);
     /// The reflectance of a conductor at normal incidence, of `reflectance` or of `eta` and `k`.
