@@ -64,7 +64,7 @@ namespace {
     /// What to say of tracing that ended with few of the photons asked for; "" for others.
     std::string few_photons(const scene& s, const photon_stats& p)
     {
-        if (p.emitted == 0 || 10 * p.stored > p.asked)
+        if (p.emitted == 0 || 40 * p.stored > p.asked)
             return "";
         const auto share = text("at most ", 100 * most_expected(p.stored) / static_cast<double>(p.emitted), " %");
         const auto paths = text(p.emitted, " photon paths from ", detail::names_of_lights(s));

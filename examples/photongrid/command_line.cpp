@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <sstream>
@@ -68,6 +69,11 @@ namespace {
         if (first.empty() || first.starts_with("-")
             || std::find(std::begin(commands), std::end(commands), first) != std::end(commands))
             return;
+        if (std::error_code none; std::filesystem::is_regular_file(first, none)) {
+            const std::string file(first);
+            throw CLI::ValidationError(
+                "photongrid", "\"" + file + "\" is a file, not a command; \"photongrid render " + file + "\" draws it");
+        }
         std::string expected;
         for (const auto* name : commands)
             expected += (name == commands[0] ? "" : name == *std::rbegin(commands) ? " or " : ", ") + std::string(name);

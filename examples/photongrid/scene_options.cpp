@@ -27,6 +27,8 @@ void add_scene(CLI::App& to, std::string& path, import_settings& how)
           "along, so that the picture stays the same")
         ->type_name("METRES")
         ->check(CLI::Range(1e-9, 1e9).description(""));
+    to.add_flag(
+        "--z-up", how.z_up, "z is up in a scene of another program, as in plans and surveys: turn it so that y is");
     to.add_option("--camera-from", how.camera_from,
           "scene of any format whose camera and size of the picture are taken in place of the scene's own")
         ->type_name("SCENE");

@@ -1,4 +1,5 @@
 // Scenes of other programs.
+#include "default_view_tests.hpp"
 #include "far_mesh_tests.hpp"
 #include "five_formats_tests.hpp"
 #include "glass_body_tests.hpp"

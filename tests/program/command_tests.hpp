@@ -46,6 +46,9 @@ namespace {
             "photongrid: \"rendr\" is not a command; expected render, view, reference, compare, error, check, convert "
             "or devices\n"
             "Run with --help for more information.\n");
+        const auto bare = run({ring});
+        EXPECT_EQ(bare.code, 2);
+        EXPECT_NE(bare.err.find("is a file, not a command; \"photongrid render "), std::string::npos) << bare.err;
         EXPECT_EQ(run({"render"}).code, 2);
         for (const auto& wrong : std::vector<std::vector<std::string>>{{"--backend", "cuda"}, {"--size", "32"},
                  {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
@@ -267,7 +270,7 @@ namespace {
         std::ofstream(folder / "s.pbrt") << "Camera \"perspective\"\nWorldBegin\nShape \"disk\"\nMaterial \"hair\"\n"
                                             "Translate 0 0 4\nShape \"sphere\"\n";
         const std::string note = "s.pbrt:4:1: note: material \"hair\": drawn as diffuse 0.5\n",
-                          sky = "s.pbrt: note: the file has no light; a white environment of radiance 1 is added\n";
+                          sky = "s.pbrt: note: the file has no light; a sky with a soft bright patch is added\n";
         const auto checked = run({"check", "s.pbrt"});
         EXPECT_EQ(checked.code, 0) << checked.err;
         EXPECT_NE(checked.out.find("\"s\": 2 shapes, 2 materials, 1 light"), std::string::npos) << checked.out;

@@ -77,7 +77,7 @@ namespace {
         void check_shapes() const
         {
             const auto& shapes = at(root(), "shapes");
-            if (count_shapes(scene_) == 0)
+            if (!has_surfaces(scene_))
                 fail(shapes.place, detail::no_shape);
             const auto number = [&](const detail::shape_place& p) {
                 return std::distance(shape_places_.begin(), std::find(shape_places_.begin(), shape_places_.end(), p));

@@ -105,8 +105,17 @@ namespace {
         case scene_format::ply: return read_ply_scene(path, settings);
         case scene_format::photongrid: break;
         }
+        if (const auto ending = ending_of(path), text = beginning_of(path);
+            !text.empty() && ending != ".json" && !first_word(text).starts_with("{"))
+            throw scene_error(path, 0, 0,
+                ending == ".mtl"
+                    ? "has materials alone; open the .obj that names it"
+                    : "is no scene that photongrid reads; expected .json, .gltf, .glb, .obj, .ply, .pbrt or "
+                      ".xml");
         if (settings.unit)
             throw scene_error(path, 0, 0, "a unit was given, but photongrid's own scene files have \"units\"");
+        if (settings.z_up)
+            throw scene_error(path, 0, 0, "y is up in photongrid's own scene files");
         return {read_scene(path, settings.before_reading), {}};
     }
 

@@ -5,21 +5,31 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace photongrid {
 
 std::optional<double> fitting_exposure(const image& picture)
 {
-    double sum = 0, lit = 0;
+    std::vector<double> stops;
     for (const auto& p : picture.pixels) {
         const glm::dvec3 c(p);
         const double luminance = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; // of sRGB's primaries
-        if (luminance > 0 && std::isfinite(luminance)) {
-            sum += std::log2(luminance);
+        if (luminance > 0 && std::isfinite(luminance))
+            stops.push_back(std::log2(luminance));
+    }
+    if (stops.empty())
+        return std::nullopt;
+    const auto bright = stops.begin() + static_cast<std::ptrdiff_t>(stops.size() * 19 / 20);
+    std::nth_element(stops.begin(), bright, stops.end());
+    const double least = *bright - 6;
+    double sum = 0, lit = 0;
+    for (const double s : stops)
+        if (s >= least) {
+            sum += s;
             ++lit;
         }
-    }
-    return lit > 0 ? std::optional(std::log2(0.18) - sum / lit) : std::nullopt;
+    return std::log2(0.18) - sum / lit;
 }
 
 double exposure_for(const image& picture, std::optional<double> set)

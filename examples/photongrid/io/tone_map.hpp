@@ -8,8 +8,9 @@
 
 namespace photongrid {
 
-/// The exposure, EV, at which the geometric mean of the luminance of all pixels that are not black becomes 0.18, middle
-/// grey (Reinhard et al. 2002, Photographic Tone Reproduction for Digital Images); none for a black picture.
+/// The exposure, EV, at which the geometric mean of the luminance of all lit pixels becomes 0.18, middle grey (Reinhard
+/// et al. 2002, Photographic Tone Reproduction for Digital Images); none for a black picture. A pixel is lit if it is
+/// at most 6 EV darker than the 95th percentile: the dark around a spotlight does not burn out what it lights.
 std::optional<double> fitting_exposure(const image& picture);
 
 /// The exposure, EV, at which a picture is shown: the one that is set, or the fitting one; 0 for a black picture.

@@ -25,7 +25,7 @@ struct photons {
     buffer_of<B, glm::vec4> positions;    ///< xyz, m; w: 1 for caustic photons, else 0
     buffer_of<B, glm::vec4> powers;       ///< rgb, W; w: in a routed map, how often the photon is in it
     buffer_of<B, glm::vec4> directions{}; ///< xyz: unit vector; empty unless needed
-    buffer_of<B, glm::vec4> normals{};    ///< xyz: geometric normal, unit, of the surface they lie on; empty unless needed
+    buffer_of<B, glm::vec4> normals{};    ///< xyz: geometric, unit, of the surfaces; empty unless needed
 
     /// The number of photons.
     uint size() const { return static_cast<uint>(positions.size()); }

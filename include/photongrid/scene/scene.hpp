@@ -141,6 +141,12 @@ inline std::size_t count_shapes(const scene& s)
     return n;
 }
 
+/// Whether a scene has a surface that a ray can hit: a shape, or that of a lamp.
+inline bool has_surfaces(const scene& s)
+{
+    return count_shapes(s) + s.rectangle_lights.size() + s.mesh_lights.size() + s.sphere_lights.size() > 0;
+}
+
 /// The number of lights of a scene.
 inline std::size_t count_lights(const scene& s)
 {

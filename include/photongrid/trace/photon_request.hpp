@@ -35,8 +35,9 @@ inline bool may_have_caustics(const scene_layout& layout)
 }
 
 /// The most paths for each photon of a request: for photons of all light, for caustic photons alone, and for the other
-/// photons where caustic ones have a map of their own, since each pass then pays for both.
-constexpr uint most_paths_per_photon = 256, most_paths_per_caustic_photon = 64, most_paths_per_other_photon = 8;
+/// photons where caustic ones have a map of their own, since each pass then pays for both. Of light that a share s of
+/// all paths finds, n paths leave a noise of sqrt(s / n) of all light: where few find it, more of them are not needed.
+constexpr uint most_paths_per_photon = 256, most_paths_per_caustic_photon = 32, most_paths_per_other_photon = 2;
 
 /// A request for caustic photons alone.
 inline photon_request request_of_caustics(uint photons)

@@ -251,7 +251,7 @@ namespace detail {
                 out_.features |= m.surface->colors.empty() && !has_texture(s_.materials, of) ? 0u : has_textures;
             }
             out_.features |= media_.media().empty() ? 0u : has_media;
-            require(count_shapes(s_) > 0, no_shape);
+            require(has_surfaces(s_), no_shape);
             out_.is_matte = !diffuse.empty();
             if (!out_.is_matte)
                 diffuse = extent_.all; // of which nothing is seen
