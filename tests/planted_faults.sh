@@ -77,7 +77,7 @@ faults=(
   "a map of caustics: errors are those of the other photons|include/photongrid/render/add_error.glsl|standard_error * standard_error + m * m|standard_error * standard_error|on_serial_pictures"
   "a map of caustics: the others' k|include/photongrid/render/picture_search.hpp|s.estimate.sought(has_caustic_map(s))|s.estimate.sought(false)"
   "a map of caustics: caustics in both maps|include/photongrid/trace/photon_request.hpp|r.kinds = kernels::OTHER_PHOTONS;|r.kinds = kernels::OTHER_PHOTONS \| kernels::CAUSTICS;"
-  "a map of caustics: tracing takes long|include/photongrid/trace/photon_request.hpp|most_paths_per_other_photon = 8;|most_paths_per_other_photon = 32;"
+  "a map of caustics: tracing takes long|include/photongrid/trace/photon_request.hpp|most_paths_per_other_photon = 2;|most_paths_per_other_photon = 32;"
   "bias: of another filter|include/photongrid/estimate/filter.hpp|filter_kind::silverman, 3, 1 / 4.0f|filter_kind::silverman, 3, 1 / 3.0f"
   "bias: the difference is not of these filters|include/photongrid/estimate/bias_weights.glsl|2.0f * t - 1.0f|2.0f * t - 0.9f"
   "bias: a slope jumps|include/photongrid/estimate/bias_weights.glsl|inverse - 1.33333333f|inverse - 1.0f"
