@@ -265,8 +265,11 @@ void scene_builder::choose_settings()
     const auto b = bounds_of(made_);
     auto& r = made_.render;
     r.map.photons = 200'000;
-    r.map.caustic_photons = 10'000;
-    r.estimate.k = 500; // fewer leave blotches on walls
+    const bool focuses = std::any_of(made_.materials.begin(), made_.materials.end(), [](const material& m) {
+        return m.kind == material_kind::mirror || m.kind == material_kind::metal || m.kind == material_kind::glass;
+    });
+    r.map.caustic_photons = focuses ? 10'000 : 2'000; // what coats reflect is dim
+    r.estimate.k = 500;                               // fewer leave blotches on walls
     r.estimate.max_radius = std::clamp(0.1 * glm::length(b.high - b.low), 1e-6, max_length);
     r.view.spp = 1;
     const auto lights = static_cast<std::uint32_t>(std::min<std::size_t>(count_lights(made_), 16));
