@@ -297,8 +297,59 @@ TYPED_TEST_P(probed_edges, make_even_light_even_up_to_edges_and_walls)
     this->report("A9_probes_light", "mean of even light near edges, off by:", worst);
 }
 
+TYPED_TEST_P(probed_edges, let_no_light_through_a_wall)
+{
+    // A wall of 0.1 m across the floor, and light on one side of it alone.
+    auto& b = this->b();
+    scene s = empty_scene({0.5, 1.5, 0.5});
+    add_rectangle(s, made_of::polygons, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    s.boxes.push_back({{-0.05, 0, -1}, {0.1, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
+    const auto scene = upload_scene(b, s);
+    random_source u(8);
+    const auto map_of = [&](double low, double high) {
+        oriented_set set;
+        set.photons.g = make_grid(scene.layout.low, scene.layout.high, {24, 1, 24});
+        for (int i = 0; i < 20000; ++i) {
+            const dvec3 p(low + (high - low) * static_cast<double>(u()), 0, 2 * static_cast<double>(u()) - 1);
+            set.photons.positions.emplace_back(glm::vec3(p - scene.layout.center), 0.0f);
+            set.photons.powers.emplace_back(1.0f);
+            set.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
+            set.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+        }
+        auto photons = upload_photons(b, set.photons);
+        photons.directions = b.upload(std::span<const glm::vec4>(set.directions));
+        photons.normals = b.upload(std::span<const glm::vec4>(set.normals));
+        return sorted_map(b, std::move(photons), set.photons.g);
+    };
+    const auto light = map_of(-1, -0.05), first = map_of(-1, 1);
+    std::vector<glm::vec4> points, normals;
+    for (int i = 0; i < 200; ++i) {
+        const dvec3 p(0.06 + 0.1 * static_cast<double>(u()), 0, static_cast<double>(u()) - 0.5);
+        points.emplace_back(glm::vec3(p - scene.layout.center), 1.0f);
+        normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+    }
+    const auto at = b.upload(std::span<const glm::vec4>(points)), up = b.upload(std::span<const glm::vec4>(normals));
+    const auto mean = [&](edge_correction edges) {
+        estimate_sources<typename TestFixture::B> from;
+        from.scene = &scene;
+        from.map = &light;
+        from.search = {.k = 2000, .max_radius = 0.3f, .filter = filter_kind::silverman};
+        from.search.leaks = {.side = true, .min_cosine = 0.5f};
+        from.edges = edges;
+        from.radii = {&first, 2000};
+        point_estimates<typename TestFixture::B> e(b, from, at, up, running_estimate_kind::none, step_size::largest);
+        while (!e.advance()) {}
+        double sum = 0;
+        for (const auto& v : b.download(e.take().irradiance))
+            sum += static_cast<double>(v.x);
+        return sum / static_cast<double>(points.size()) / (20000 / (0.95 * 2));
+    };
+    EXPECT_GT(mean(edge_correction::none), 0.05);
+    EXPECT_LT(mean(edge_correction::probes), 0.001);
+}
+
 REGISTER_TYPED_TEST_SUITE_P(probed_edges, are_those_of_a_square_of_any_kind, are_those_of_a_disk,
     make_even_light_even_up_to_edges_and_walls, discs_end_where_the_floor_goes_on_behind_a_wall,
-    discs_are_no_wider_than_a_leg, go_on_in_a_tube_but_not_in_a_can);
+    discs_are_no_wider_than_a_leg, go_on_in_a_tube_but_not_in_a_can, let_no_light_through_a_wall);
 
 } // namespace photongrid::testing
