@@ -211,6 +211,7 @@ TYPED_TEST_P(probed_edges, go_on_in_a_tube_but_not_in_a_can)
     for (const bool closed : {false, true}) {
         scene s = empty_scene({0.5, 1.5, 0.5});
         add_rectangle(s, made_of::polygons, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0});
+        add_rectangle(s, made_of::polygons, {-2, 2, -2}, {4, 0, 0}, {0, 0, 4}); // a ceiling
         s.cylinders.push_back({{0, 0, 0}, {0, 0.3, 0}, 0.5, 0});
         if (closed)
             s.disks.push_back({{0, 0.3, 0}, {0, 1, 0}, 0.5, 0});
