@@ -53,6 +53,23 @@ protected:
         std::vector<glm::vec4> points, cover;
     };
 
+    /// Photons of one power that come from straight above to a floor.
+    map_buffers<B> map_on_floor(const device_scene<B>& scene, const std::vector<dvec3>& places, float power)
+    {
+        auto& b = this->b();
+        oriented_set set;
+        set.photons.g = make_grid(scene.layout.low, scene.layout.high, {24, 1, 24});
+        for (const auto& p : places) {
+            set.photons.positions.emplace_back(glm::vec3(p - scene.layout.center), 0.0f);
+            set.photons.powers.emplace_back(power);
+            set.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
+            set.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+        }
+        auto photons = upload_photons(b, set.photons);
+        photons.directions = b.upload(std::span<const glm::vec4>(set.directions));
+        photons.normals = b.upload(std::span<const glm::vec4>(set.normals));
+        return sorted_map(b, std::move(photons), set.photons.g);
+    }
     template <class Device>
     static found probe_on(Device& b, const device_scene<Device>& scene, const discs& d, const disc_probing& how)
     {
@@ -241,22 +258,11 @@ TYPED_TEST_P(probed_edges, make_even_light_even_up_to_edges_and_walls)
             const auto scene = upload_scene(b, s);
             random_source u(6);
             const auto map_of = [&] {
-                oriented_set set;
-                set.photons.g = make_grid(scene.layout.low, scene.layout.high, {24, 1, 24});
-                for (uint i = 0; i < photons; ++i) {
-                    set.photons.positions.emplace_back(
-                        glm::vec3(dvec3((static_cast<double>(i % side) + static_cast<double>(u())) / side, 0,
-                                      (static_cast<double>(i / side) + static_cast<double>(u())) / side)
-                            - scene.layout.center),
-                        0.0f);
-                    set.photons.powers.emplace_back(1.0f / photons);
-                    set.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
-                    set.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
-                }
-                auto p = upload_photons(b, set.photons);
-                p.directions = b.upload(std::span<const glm::vec4>(set.directions));
-                p.normals = b.upload(std::span<const glm::vec4>(set.normals));
-                return sorted_map(b, std::move(p), set.photons.g);
+                std::vector<dvec3> places;
+                for (uint i = 0; i < photons; ++i)
+                    places.emplace_back((static_cast<double>(i % side) + static_cast<double>(u())) / side, 0,
+                        (static_cast<double>(i / side) + static_cast<double>(u())) / side);
+                return this->map_on_floor(scene, places, 1.0f / photons);
             };
             const auto light = map_of(), first = map_of();
             std::vector<glm::vec4> points, normals;
@@ -308,19 +314,10 @@ TYPED_TEST_P(probed_edges, let_no_light_through_a_wall)
     const auto scene = upload_scene(b, s);
     random_source u(8);
     const auto map_of = [&](double low, double high) {
-        oriented_set set;
-        set.photons.g = make_grid(scene.layout.low, scene.layout.high, {24, 1, 24});
-        for (int i = 0; i < 20000; ++i) {
-            const dvec3 p(low + (high - low) * static_cast<double>(u()), 0, 2 * static_cast<double>(u()) - 1);
-            set.photons.positions.emplace_back(glm::vec3(p - scene.layout.center), 0.0f);
-            set.photons.powers.emplace_back(1.0f);
-            set.directions.emplace_back(0.0f, -1.0f, 0.0f, 0.0f);
-            set.normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
-        }
-        auto photons = upload_photons(b, set.photons);
-        photons.directions = b.upload(std::span<const glm::vec4>(set.directions));
-        photons.normals = b.upload(std::span<const glm::vec4>(set.normals));
-        return sorted_map(b, std::move(photons), set.photons.g);
+        std::vector<dvec3> places;
+        for (int i = 0; i < 20000; ++i)
+            places.emplace_back(low + (high - low) * static_cast<double>(u()), 0, 2 * static_cast<double>(u()) - 1);
+        return this->map_on_floor(scene, places, 1);
     };
     const auto light = map_of(-1, -0.05), first = map_of(-1, 1);
     std::vector<glm::vec4> points, normals;

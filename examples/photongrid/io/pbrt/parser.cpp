@@ -320,14 +320,20 @@ namespace {
             state_.material = {.name = {}, .index = made_.materials.size()};
             made_.materials.push_back(read_entity(t, place, "a material's type", "material"));
         }
+        /// What follows a name: its type is a parameter.
+        entity read_named_entity(token_reader& t, const source_place& place, const char* kind)
+        {
+            entity e{.type = "", .place = place, .colors = state_.colors, .to_world = state_.to_world};
+            e.parameters = read_parameters(t);
+            if (const auto found = state_.defaults.find(kind); found != state_.defaults.end())
+                e.parameters.add_absent(found->second);
+            e.type = e.parameters.text("type", "");
+            return e;
+        }
         void read_named_material(token_reader& t, const source_place& place)
         {
             const auto name = t.quoted("a material's name");
-            entity e{.type = "", .place = place, .colors = state_.colors, .to_world = state_.to_world};
-            e.parameters = read_parameters(t);
-            if (const auto found = state_.defaults.find("material"); found != state_.defaults.end())
-                e.parameters.add_absent(found->second);
-            e.type = e.parameters.text("type", "");
+            auto e = read_named_entity(t, place, "material");
             if (e.type.empty())
                 fail_at(place, "MakeNamedMaterial " + shown_word(name) + " lacks the parameter \"string type\"");
             if (!made_.named_materials.emplace(name, made_.materials.size()).second)
@@ -359,11 +365,7 @@ namespace {
         void read_medium(token_reader& t, const source_place& place)
         {
             const auto name = t.quoted("a medium's name");
-            entity e{.type = "", .place = place, .colors = state_.colors, .to_world = state_.to_world};
-            e.parameters = read_parameters(t);
-            if (const auto found = state_.defaults.find("medium"); found != state_.defaults.end())
-                e.parameters.add_absent(found->second);
-            e.type = e.parameters.text("type", "");
+            auto e = read_named_entity(t, place, "medium");
             if (!made_.media.emplace(name, std::move(e)).second)
                 fail_at(place, "the medium " + shown_word(name) + " is defined twice");
         }
