@@ -144,7 +144,7 @@ if [[ $gpu == yes ]]; then
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
-  for section in algorithms clusters defaults edges error estimates gather inclusion lamps pictures window; do
+  for section in algorithms clusters defaults edges error estimates gather inclusion lamps panes pictures window; do
     must $sections $section --quick
   done
   must $sections convergence --quick cpu
@@ -211,6 +211,7 @@ if asked estimates; then
   measure "Error and cost of each kind of estimate" $sections estimates
   measure "Edge correction" $sections edges
   measure "One lamp and a hundred" $sections lamps
+  measure "Surfaces under a pane of glass" $sections panes
   measure "Indirect light and caustics: one map, a final gather, shrinking radii" $sections gather
 fi
 if asked error; then

@@ -28,7 +28,7 @@ struct photon_vectors {
 /// A query, broadcast to all lanes.
 struct query_lanes {
     vector x, y, z, normal_x, normal_y, normal_z;
-    vector rounding2; ///< see is_off_surface in photon_distance.glsl
+    vector rounding2; ///< see off_surface.glsl
     HWY_INLINE explicit query_lanes(const query& q)
     {
         const floats d;

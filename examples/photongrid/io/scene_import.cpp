@@ -95,7 +95,9 @@ scene_format format_of(const std::string& path, std::string_view text)
 scene_format format_of_file(const std::string& path) { return format_of(path, beginning_of(path)); }
 
 namespace {
-    imported_scene read_any(const std::string& path, scene_format format, const import_settings& settings)
+    /// `text`: the beginning of the file.
+    imported_scene read_any(
+        const std::string& path, scene_format format, std::string_view text, const import_settings& settings)
     {
         switch (format) {
         case scene_format::pbrt: return read_pbrt(path, settings);
@@ -105,7 +107,7 @@ namespace {
         case scene_format::ply: return read_ply_scene(path, settings);
         case scene_format::photongrid: break;
         }
-        if (const auto ending = ending_of(path), text = beginning_of(path);
+        if (const auto ending = ending_of(path);
             !text.empty() && ending != ".json" && !first_word(text).starts_with("{"))
             throw scene_error(path, 0, 0,
                 ending == ".mtl"
@@ -135,8 +137,9 @@ namespace {
 
 imported_scene import_scene(const std::string& path, const import_settings& settings)
 {
-    const auto format = format_of_file(path);
-    auto made = read_any(path, format, settings);
+    const auto text = beginning_of(path);
+    const auto format = format_of(path, text);
+    auto made = read_any(path, format, text, settings);
     mend_glass(made, path, format == scene_format::pbrt || format == scene_format::mitsuba);
     if (!settings.environment.empty())
         set_environment(made.scene, settings.environment);

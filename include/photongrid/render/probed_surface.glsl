@@ -1,5 +1,5 @@
 // Whether what a short ray hits belongs to the surface of an estimate's disc. Included by kernels after
-// trace/mesh_hit.glsl and trace/materials.glsl, after their INPUTs points and normals, with Params that have min_cosine.
+// trace/mesh_hit.glsl and trace/materials.glsl, after their INPUTs points and normals. Their Params have min_cosine.
 #include <photongrid/estimate/off_surface.glsl>
 
 // Whether a ray of direction d hits the surface of point i, with photons that would count.

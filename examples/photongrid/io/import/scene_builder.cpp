@@ -107,6 +107,17 @@ std::uint32_t scene_builder::with_opacity(
     return add_once(place, std::move(changed));
 }
 
+std::uint32_t scene_builder::add_medium(const source_place& place, const std::string& name, const dvec3& absorbed)
+{
+    material m{.name = name};
+    m.kind = material_kind::glass;
+    m.reflectance = dvec3(1);
+    m.priority = 0;
+    m.index_of_refraction = 1;
+    m.absorption = absorbed / unit_;
+    return add_once(place, std::move(m));
+}
+
 std::uint32_t scene_builder::with_absorption(const source_place& place, std::uint32_t m, const dvec3& absorbed)
 {
     if (made_.materials[m].kind != material_kind::glass)

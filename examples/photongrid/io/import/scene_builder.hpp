@@ -43,7 +43,6 @@ public:
     /// @{
     /// The length of the file's unit, m, unless the settings give one. Before all that has a length.
     void set_unit(double metres);
-    double unit() const { return unit_; } ///< m
     /// The picture's size and the camera. A camera whose right is on the left of a right-handed one makes the scene's
     /// z axis the file's, reversed. Before all that has a place.
     void set_camera(const source_place& place, const imported_camera& c, std::uint32_t width, std::uint32_t height);
@@ -52,14 +51,14 @@ public:
     /// Adds a material. Returns its index.
     /// \throws scene_error for one that check() rejects.
     std::uint32_t add_material(const source_place& place, material m);
-    /// The same, unless the scene has one like it.
-    std::uint32_t add_once(const source_place& place, material m);
     /// Whether a material needs texture coordinates.
     bool has_texture(std::uint32_t m) const { return photongrid::has_texture(made_.materials, made_.materials[m]); }
     /// A mixture of two materials; where photongrid does not mix these, a note, and the one with the larger share.
     std::uint32_t add_mixture(const source_place& place, material m, std::uint32_t first, std::uint32_t second);
     /// The same material with an opacity, which meshes alone may have.
     std::uint32_t with_opacity(const source_place& place, std::uint32_t m, double opacity, const texture_use& texture);
+    /// What has no surface but absorbs as much: glass of the index of refraction 1.
+    std::uint32_t add_medium(const source_place& place, const std::string& name, const dvec3& absorbed);
     /// The same material, if it is glass, with what it absorbs of light by each of the file's units of length.
     std::uint32_t with_absorption(const source_place& place, std::uint32_t m, const dvec3& absorbed);
 
@@ -126,6 +125,8 @@ private:
     template <class List, class Light>
     void add_light(const source_place& place, List& list, Light light);
     std::string next_light_name();
+    /// As add_material(), unless the scene has one like it.
+    std::uint32_t add_once(const source_place& place, material m);
     void add_default_camera();
     /// Says that z may be up, as in plans and surveys: OBJ and PLY do not tell.
     void note_flat_along_z();

@@ -49,13 +49,7 @@ std::optional<std::uint32_t> material_reader::with_absorption(
     if (absorbed == dvec3(0))
         return m;
     if (!m) {
-        material clear{.name = "medium"};
-        clear.kind = material_kind::glass;
-        clear.reflectance = dvec3(1);
-        clear.priority = 0;
-        clear.index_of_refraction = 1;
-        clear.absorption = absorbed / builder_.unit();
-        m = builder_.add_once(place, clear);
+        m = builder_.add_medium(place, "medium", absorbed);
         glass_.insert(*m);
         return m;
     }

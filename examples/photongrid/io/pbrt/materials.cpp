@@ -68,15 +68,8 @@ std::optional<std::uint32_t> material_reader::index_of(const shape_entity& s)
     const auto inside = s.inside.empty() || s.inside == s.outside ? medium{} : medium_of(s.inside, s.place);
     const auto& e = all_.materials[entity_of(s.material, s.place)];
     const bool is_interface = e.type.empty() || e.type == "none" || e.type == "interface";
-    if (is_interface && inside.absorbed != dvec3(0) && !inside.scatters) {
-        material m{.name = s.inside};
-        m.kind = material_kind::glass;
-        m.reflectance = dvec3(1);
-        m.priority = 0;
-        m.index_of_refraction = 1;
-        m.absorption = inside.absorbed / builder_.unit();
-        return builder_.add_once(e.place, m);
-    }
+    if (is_interface && inside.absorbed != dvec3(0) && !inside.scatters)
+        return builder_.add_medium(e.place, s.inside, inside.absorbed);
     const auto index = index_of(s.material, s.place);
     return index && inside.absorbed != dvec3(0) ? builder_.with_absorption(s.place, *index, inside.absorbed) : index;
 }
