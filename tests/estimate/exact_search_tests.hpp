@@ -51,6 +51,43 @@ TYPED_TEST_P(estimators, radii_at_points_equal_brute_force)
     }
 }
 
+TYPED_TEST_P(estimators, half_spaces_equal_brute_force)
+{
+    auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 120, 3);
+    random_source u(5);
+    double off_way = 0, off_share = 0;
+    for (std::size_t q = 0; q < s.points.size(); ++q) {
+        s.points[q].w = 0.0625f;
+        auto& normal = s.point_normals[q];
+        normal.w = 0;
+        if (q % 4 == 0)
+            continue; // no plane
+        const glm::vec3 n(normal);
+        const float angle = 6.2831853f * u(), share = q % 4 == 1 ? 0.0f : u();
+        const auto basis = kernels::basis_about(n);
+        const glm::vec3 way = std::cos(angle) * basis.u + std::sin(angle) * basis.v;
+        normal.w = kernels::half_space_code(n, 3.0f * way, share);
+        const auto [along, far] = half_space_by_force(normal, 1);
+        off_way = std::max(off_way, glm::length(along - glm::dvec3(way)));
+        off_share = std::max(off_share, std::abs(far - static_cast<double>(share)));
+    }
+    EXPECT_LT(off_way, 0.1 * M_PI / 180);
+    EXPECT_LT(off_share, 0.0002);
+    for (const auto kind : all_maps) {
+        const auto map = this->known(s, kind);
+        for (const auto& leaks : all_policies) {
+            const knn_settings k{.max_radius = 1,
+                .min_radius = 1e-6f,
+                .search = search_kind::fixed_radius,
+                .radii_at_points = true,
+                .filter = filter_kind::silverman,
+                .leaks = leaks,
+                .half_spaces = true};
+            ASSERT_EQ(this->difference(s, map, k), "") << name_of(kind);
+        }
+    }
+}
+
 TYPED_TEST_P(estimators, every_combination_equals_brute_force)
 {
     const auto s = make_oriented(distribution::box_faces, 900, {6, 6, 12}, 60, 3);

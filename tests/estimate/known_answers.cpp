@@ -133,13 +133,30 @@ float radius2_in_blocks(float d2, float max_radius2)
     return std::min(static_cast<float>(std::ldexp(eighths / 8, exponent)), max_radius2);
 }
 
+std::pair<glm::dvec3, double> half_space_by_force(const vec4& normal, float radius)
+{
+    if (normal.w == 0)
+        return {glm::dvec3(0), std::numeric_limits<double>::infinity()};
+    const auto code = static_cast<uint>(normal.w) - 1;
+    const double turn = (code >> 12) / 1024.0; // round the square from (1, 0) over (0, 1), (-1, 0) and (0, -1)
+    const glm::dvec2 corners[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 0}};
+    const auto side = static_cast<uint>(turn);
+    const auto p = glm::normalize(glm::mix(corners[side], corners[side + 1], turn - side));
+    const auto basis = kernels::basis_about(glm::vec3(normal));
+    return {
+        p.x * glm::dvec3(basis.u) + p.y * glm::dvec3(basis.v), (code & 4095) / 4095.0 * static_cast<double>(radius)};
+}
+
 brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,
     const std::vector<vec4>& powers, std::size_t q, const knn_settings& k, std::optional<float> at_least_radius2)
 {
     std::vector<std::pair<float, uint>> near;
     const float max2 = k.max_radius * k.max_radius;
+    const auto before = half_space_by_force(s.point_normals[q], std::sqrt(s.points[q].w));
     for (const uint id : in_map)
-        if (const auto d2 = policy_distance2(s, q, id, k.leaks); d2 && *d2 <= max2)
+        if (const auto d2 = policy_distance2(s, q, id, k.leaks); d2 && *d2 <= max2
+            && !(k.half_spaces
+                && glm::dot(before.first, glm::dvec3(s.photons.positions[id] - s.points[q])) > before.second))
             near.emplace_back(*d2, id);
     std::sort(near.begin(), near.end());
     brute_estimate e;

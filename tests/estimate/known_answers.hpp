@@ -42,6 +42,9 @@ struct brute_estimate {
 /// precision, in the order that photon_distance.glsl promises.
 std::optional<float> policy_distance2(const oriented_set& s, std::size_t q, std::size_t id, const leak_policy& leaks);
 
+/// The half space in the w of a point's normal (half_space.glsl): unit vector to its plane, distance of that, m.
+std::pair<glm::dvec3, double> half_space_by_force(const glm::vec4& normal, float radius);
+
 /// `at_least_radius2`: the squared radius of at_least_k in a grid map, which depends on the order of cells; none in a
 /// block map.
 brute_estimate estimate_by_force(const oriented_set& s, const std::vector<uint>& in_map,

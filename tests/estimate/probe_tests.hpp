@@ -50,7 +50,7 @@ class probed_edges : public edges<Tag> {
 protected:
     using B = typename Tag::type;
     struct found {
-        std::vector<glm::vec4> points, cover;
+        std::vector<glm::vec4> points, cover, normals;
     };
 
     /// Photons of one power that come from straight above to a floor.
@@ -76,7 +76,7 @@ protected:
         const auto p = b.upload(std::span<const glm::vec4>(d.points)),
                    n = b.upload(std::span<const glm::vec4>(d.normals));
         const auto probed = probe_discs(b, scene, p, n, how);
-        return {b.download(probed.points), b.download(probed.cover)};
+        return {b.download(probed.points), b.download(probed.cover), b.download(probed.normals)};
     }
     /// Positions of `d` are the scene's. Serial's bits are compared.
     found probe(const scene& s, discs d, const disc_probing& how)
@@ -92,6 +92,7 @@ protected:
             const auto expected = probe_on(serial, reference, d, how);
             EXPECT_EQ(count_different_bits(f.points, expected.points), 0u);
             EXPECT_EQ(count_different_bits(f.cover, expected.cover), 0u);
+            EXPECT_EQ(count_different_bits(f.normals, expected.normals), 0u);
         }
         return f;
     }
@@ -170,13 +171,16 @@ TYPED_TEST_P(probed_edges, are_those_of_a_disk)
 
 TYPED_TEST_P(probed_edges, discs_end_where_the_floor_goes_on_behind_a_wall)
 {
-    // A wall of 0.1 m across the floor; and one on the floor's edge, behind which there is nothing.
+    // A wall of 0.1 m across the floor, or a sheet; and one on the floor's edge, behind which there is nothing.
     for (const auto kind : all_kinds)
-        for (const bool goes_on : {true, false}) {
+        for (const auto& [goes_on, thick] : {std::pair(true, true), std::pair(false, true), std::pair(true, false)}) {
             scene s = empty_scene({0.5, 1.5, 0.5});
             const double end = goes_on ? 1 : 0.1;
             add_rectangle(s, kind, {-1, 0, -1}, {0, 0, 2}, {1 + end, 0, 0});
-            s.boxes.push_back({{0, 0, -1}, {0.1, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
+            if (thick)
+                s.boxes.push_back({{0, 0, -1}, {0.1, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
+            else
+                add_rectangle(s, made_of::meshes, {0, 0, -1}, {0, 1, 0}, {0, 0, 2});
             discs d;
             random_source u(3);
             for (int i = 0; i < 100; ++i)
@@ -185,15 +189,17 @@ TYPED_TEST_P(probed_edges, discs_end_where_the_floor_goes_on_behind_a_wall)
             const auto kept = this->probe(s, d, {filter_kind::constant, 0.5f, false});
             double share = 0;
             for (std::size_t i = 0; i < d.points.size(); ++i) {
-                const double radius = std::sqrt(static_cast<double>(found.points[i].w));
-                EXPECT_EQ(kept.points[i].w, d.estimates[i].w) << "it must not be cut down";
+                EXPECT_EQ(kept.normals[i].w, 0) << "no half space was allowed";
+                EXPECT_EQ(kept.points[i].w, d.estimates[i].w);
+                EXPECT_EQ(found.points[i].w, d.estimates[i].w) << "a half space is enough";
                 if (goes_on) {
-                    EXPECT_GT(radius, 0.92 * 0.149);
-                    EXPECT_LT(radius, 0.153) << "not beyond the wall, whichever way the rays go";
+                    const auto [way, far] = half_space_by_force(found.normals[i], 0.3f);
+                    EXPECT_NEAR(way.x, 1, 1e-5);
+                    EXPECT_NEAR(far, 0.05, 2e-4);
                 } else {
-                    EXPECT_EQ(found.points[i].w, d.estimates[i].w);
+                    EXPECT_EQ(found.normals[i].w, 0);
                 }
-                const double known = part_by_lines({{-1, -1}, {0, -1}, {0, 1}, {-1, 1}}, {-0.05, 0}, radius).share[0];
+                const double known = part_by_lines({{-1, -1}, {0, -1}, {0, 1}, {-1, 1}}, {-0.05, 0}, 0.3).share[0];
                 EXPECT_NEAR(found.cover[i].x, known, 0.1);
                 share += static_cast<double>(found.cover[i].x) / known / static_cast<double>(d.points.size());
             }
@@ -222,7 +228,7 @@ TYPED_TEST_P(probed_edges, discs_are_no_wider_than_a_leg)
     }
 }
 
-TYPED_TEST_P(probed_edges, go_on_in_a_tube_but_not_in_a_can)
+TYPED_TEST_P(probed_edges, end_at_a_tube_and_at_a_can)
 {
     // On the floor around a tube that stands on it: its inside is floor, too, unless it is closed.
     for (const bool closed : {false, true}) {
@@ -236,14 +242,31 @@ TYPED_TEST_P(probed_edges, go_on_in_a_tube_but_not_in_a_can)
         for (int i = 0; i < 100; ++i)
             d.add({0.52 * std::cos(i), 0, 0.52 * std::sin(i)}, {0, 1, 0}, 0.2);
         const auto found = this->probe(s, d, {filter_kind::constant, 0.5f});
-        for (const auto& c : found.cover) {
-            if (closed) {
-                EXPECT_NEAR(c.x, 0.5, 0.2);
-            } else {
-                EXPECT_EQ(c.x, 1.0f);
-            }
-        }
+        for (const auto& c : found.cover)
+            EXPECT_NEAR(c.x, 0.5, 0.2);
+        for (const auto& n : found.normals)
+            EXPECT_TRUE(closed || n.w > 0) << "a half space keeps what is in the tube out";
+        for (std::size_t i = 0; i < found.points.size(); ++i)
+            EXPECT_EQ(found.points[i].w, d.estimates[i].w) << "the half space before the nearest wall is enough";
     }
+}
+
+TYPED_TEST_P(probed_edges, keep_their_radius_beside_a_leg)
+{
+    // On the floor around a round leg: the half space before its nearest side is enough.
+    scene s = empty_scene({0.5, 1.5, 0.5});
+    add_rectangle(s, made_of::polygons, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0});
+    s.cylinders.push_back({{0, 0, 0}, {0, 3, 0}, 0.05, 0});
+    discs d;
+    for (int i = 0; i < 200; ++i)
+        d.add({0.07 * std::cos(i), 0, 0.07 * std::sin(i)}, {0, 1, 0}, 0.2);
+    const auto found = this->probe(s, d, {filter_kind::constant, 0.5f});
+    int cut = 0;
+    for (std::size_t i = 0; i < d.points.size(); ++i) {
+        cut += found.points[i].w < d.estimates[i].w ? 1 : 0;
+        EXPECT_GT(found.normals[i].w, 0);
+    }
+    EXPECT_LT(cut, 20);
 }
 
 TYPED_TEST_P(probed_edges, make_even_light_even_up_to_edges_and_walls)
@@ -306,48 +329,89 @@ TYPED_TEST_P(probed_edges, make_even_light_even_up_to_edges_and_walls)
 
 TYPED_TEST_P(probed_edges, let_no_light_through_a_wall)
 {
-    // A wall of 0.1 m across the floor, and light on one side of it alone.
+    // A wall across the floor, two in a corner, a pipe, or a block of glass, and light on one side alone: none comes to
+    // the other, and on its own side it is even up to the wall.
     auto& b = this->b();
-    scene s = empty_scene({0.5, 1.5, 0.5});
-    add_rectangle(s, made_of::polygons, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
-    s.boxes.push_back({{-0.05, 0, -1}, {0.1, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
-    const auto scene = upload_scene(b, s);
-    random_source u(8);
-    const auto map_of = [&](double low, double high) {
-        std::vector<dvec3> places;
-        for (int i = 0; i < 20000; ++i)
-            places.emplace_back(low + (high - low) * static_cast<double>(u()), 0, 2 * static_cast<double>(u()) - 1);
-        return this->map_on_floor(scene, places, 1);
+    struct wall {
+        const char* name;
+        scene s = empty_scene({0.5, 1.5, 0.5});
+        std::function<bool(const dvec3&)> is_lit;
+        dvec3 lit, dark;              ///< the floor's points nearest to the wall
+        dvec3 out;                    ///< of the lit side
+        double from = -0.5, to = 0.5; ///< along the wall; of a pipe an angle
     };
-    const auto light = map_of(-1, -0.05), first = map_of(-1, 1);
-    std::vector<glm::vec4> points, normals;
-    for (int i = 0; i < 200; ++i) {
-        const dvec3 p(0.06 + 0.1 * static_cast<double>(u()), 0, static_cast<double>(u()) - 0.5);
-        points.emplace_back(glm::vec3(p - scene.layout.center), 1.0f);
-        normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+    std::vector<wall> walls;
+    for (const double thick : {0.1, 0.01}) {
+        walls.push_back({"a wall", empty_scene({0.5, 1.5, 0.5}), [thick](const dvec3& p) { return p.x < -thick / 2; },
+            {-thick / 2, 0, 0}, {thick / 2, 0, 0}, {-1, 0, 0}});
+        walls.back().s.boxes.push_back({{-thick / 2, 0, -1}, {thick, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
     }
-    const auto at = b.upload(std::span<const glm::vec4>(points)), up = b.upload(std::span<const glm::vec4>(normals));
-    const auto mean = [&](edge_correction edges) {
-        estimate_sources<typename TestFixture::B> from;
-        from.scene = &scene;
-        from.map = &light;
-        from.search = {.k = 2000, .max_radius = 0.3f, .filter = filter_kind::silverman};
-        from.search.leaks = {.side = true, .min_cosine = 0.5f};
-        from.edges = edges;
-        from.radii = {&first, 2000};
-        point_estimates<typename TestFixture::B> e(b, from, at, up, running_estimate_kind::none, step_size::largest);
-        while (!e.advance()) {}
-        double sum = 0;
-        for (const auto& v : b.download(e.take().irradiance))
-            sum += static_cast<double>(v.x);
-        return sum / static_cast<double>(points.size()) / (20000 / (0.95 * 2));
-    };
-    EXPECT_GT(mean(edge_correction::none), 0.05);
-    EXPECT_LT(mean(edge_correction::probes), 0.001);
+    walls.push_back({"a sheet", empty_scene({0.5, 1.5, 0.5}), [](const dvec3& p) { return p.x < 0; }, {0, 0, 0},
+        {0, 0, 0}, {-1, 0, 0}});
+    add_rectangle(walls.back().s, made_of::meshes, {0, 0, -1}, {0, 1, 0}, {0, 0, 2});
+    const auto outside = [](const dvec3& p) { return p.x < -0.005 || p.z < -0.005; };
+    walls.push_back(
+        {"a corner", empty_scene({0.5, 1.5, 0.5}), outside, {-0.005, 0, 0}, {0.005, 0, 0}, {-1, 0, 0}, 0.02, 0.6});
+    walls.back().s.boxes.push_back({{-0.005, 0, -0.005}, {0.01, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
+    walls.back().s.boxes.push_back({{-0.005, 0, -0.005}, {2, 0, 0}, {0, 1, 0}, {0, 0, 0.01}, 0});
+    walls.push_back({"a block of glass", empty_scene({0.5, 1.5, 0.5}), [](const dvec3& p) { return p.x < 0; },
+        {0, 0, 0}, {0, 0, 0}, {-1, 0, 0}});
+    walls.back().s.materials.push_back({"glass", material_kind::glass, dvec3(1), 1.5});
+    walls.back().s.boxes.push_back({{-1, 0, -1}, {1, 0, 0}, {0, 0.3, 0}, {0, 0, 2}, 1});
+    walls.push_back({"a pipe", empty_scene({0.5, 1.5, 0.5}), [](const dvec3& p) { return glm::length(p) > 0.5; },
+        {0.5, 0, 0}, {0.45, 0, 0}, {1, 0, 0}});
+    for (const double radius : {0.5, 0.45})
+        walls.back().s.cylinders.push_back({{0, 0, 0}, {0, 1, 0}, radius, 0});
+    for (auto& w : walls) {
+        add_rectangle(w.s, made_of::polygons, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+        const auto scene = upload_scene(b, w.s);
+        random_source u(8);
+        const auto map_of = [&](bool everywhere) {
+            std::vector<dvec3> places;
+            for (int i = 0; i < 200000; ++i) {
+                const dvec3 p(2 * static_cast<double>(u()) - 1, 0, 2 * static_cast<double>(u()) - 1);
+                if (everywhere || w.is_lit(p))
+                    places.push_back(p);
+            }
+            return this->map_on_floor(scene, places, 4.0f / 200000);
+        };
+        const auto light = map_of(false), first = map_of(true);
+        const auto mean = [&](bool lit, edge_correction edges) {
+            std::vector<glm::vec4> points, normals;
+            for (int i = 0; i < 200; ++i) {
+                dvec3 p = (lit ? w.lit + 0.05 * static_cast<double>(u()) * w.out
+                               : w.dark - (0.001 + 0.05 * static_cast<double>(u())) * w.out);
+                const double turn = w.from + (w.to - w.from) * static_cast<double>(u());
+                p = w.out.x > 0 ? dvec3(p.x * std::cos(turn), 0, p.x * std::sin(turn)) : p + dvec3(0, 0, turn);
+                points.emplace_back(glm::vec3(p - scene.layout.center), 1.0f);
+                normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
+            }
+            const auto at = b.upload(std::span<const glm::vec4>(points)),
+                       up = b.upload(std::span<const glm::vec4>(normals));
+            estimate_sources<typename TestFixture::B> from;
+            from.scene = &scene;
+            from.map = &light;
+            from.search = {.k = 3000, .max_radius = 0.3f, .filter = filter_kind::silverman};
+            from.search.leaks = {.side = true, .min_cosine = 0.5f};
+            from.edges = edges;
+            from.radii = {&first, 3000};
+            point_estimates<typename TestFixture::B> e(
+                b, from, at, up, running_estimate_kind::none, step_size::largest);
+            while (!e.advance()) {}
+            double sum = 0;
+            for (const auto& v : b.download(e.take().irradiance))
+                sum += static_cast<double>(v.x);
+            return sum / static_cast<double>(points.size());
+        };
+        EXPECT_GT(mean(false, edge_correction::none), 0.0005) << w.name;
+        EXPECT_LT(mean(false, edge_correction::probes), 0.001) << w.name;
+        EXPECT_NEAR(mean(true, edge_correction::probes), 1, 0.05) << w.name;
+    }
 }
 
 REGISTER_TYPED_TEST_SUITE_P(probed_edges, are_those_of_a_square_of_any_kind, are_those_of_a_disk,
     make_even_light_even_up_to_edges_and_walls, discs_end_where_the_floor_goes_on_behind_a_wall,
-    discs_are_no_wider_than_a_leg, go_on_in_a_tube_but_not_in_a_can, let_no_light_through_a_wall);
+    discs_are_no_wider_than_a_leg, keep_their_radius_beside_a_leg, end_at_a_tube_and_at_a_can,
+    let_no_light_through_a_wall);
 
 } // namespace photongrid::testing

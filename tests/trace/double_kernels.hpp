@@ -40,6 +40,7 @@ inline double uintBitsToFloat(uint bits) { return static_cast<double>(glm::uintB
 #include <photongrid/core/random.glsl>
 #include <photongrid/core/vector.glsl>
 #include <photongrid/estimate/gather_tally.glsl>
+#include <photongrid/estimate/half_space.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/estimate/search_tally.glsl>

@@ -18,6 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// A query point and its normal.
 struct query {
     glm::vec3 at{0}, normal{0};
+    kernels::HalfSpace before{}; ///< with search_job::half_spaces
 };
 
 /// The attributes of photons in the map or in a packet.
@@ -28,7 +29,8 @@ struct photon_vectors {
 /// A query, broadcast to all lanes.
 struct query_lanes {
     vector x, y, z, normal_x, normal_y, normal_z;
-    vector rounding2; ///< see off_surface.glsl
+    vector rounding2;                ///< see off_surface.glsl
+    vector way_x, way_y, way_z, far; ///< see half_space.glsl
     HWY_INLINE explicit query_lanes(const query& q)
     {
         const floats d;
@@ -40,6 +42,10 @@ struct query_lanes {
         normal_z = hn::Set(d, q.normal.z);
         const float rounding = (std::abs(q.at.x) + std::abs(q.at.y) + std::abs(q.at.z)) * 0x1p-17f;
         rounding2 = hn::Set(d, rounding * rounding + std::numeric_limits<float>::min());
+        way_x = hn::Set(d, q.before.way.x);
+        way_y = hn::Set(d, q.before.way.y);
+        way_z = hn::Set(d, q.before.way.z);
+        far = hn::Set(d, q.before.far);
     }
 };
 
@@ -78,6 +84,10 @@ HWY_INLINE vector squared_distances(const search_job& j, const query_lanes& q, c
         const auto on_surface
             = hn::Le(hn::Mul(rise, rise), hn::Add(hn::Mul(plain2, share2), q.rounding2)); // see is_off_surface
         d2 = hn::IfThenElse(hn::And(hn::Ge(cosine, hn::Set(d, j.min_cosine)), on_surface), d2, rejected);
+    }
+    if (POLICIES == 2 && j.half_spaces) {
+        const auto along = hn::Add(hn::Add(hn::Mul(dx, q.way_x), hn::Mul(dy, q.way_y)), hn::Mul(dz, q.way_z));
+        d2 = hn::IfThenElse(hn::Le(along, q.far), d2, rejected);
     }
     return d2;
 }

@@ -244,13 +244,15 @@ inline bool needs_estimate(const search_job& j, uint point)
     return j.searching && j.points[point].w > 0.0f && kernels::is_finite(j.points[point]);
 }
 
-/// A point of the search, with its normal if policies need it.
+/// A point of the search, with its normal and half space if policies need them.
 template <int POLICIES>
 HWY_INLINE query query_at(const search_job& j, uint point)
 {
     query q{glm::vec3(j.points[point]), glm::vec3(0)};
     if (POLICIES != 0)
         q.normal = glm::vec3(j.point_normals[point]);
+    if (POLICIES == 2 && j.half_spaces)
+        q.before = kernels::half_space_of(j.point_normals[point], std::sqrt(j.points[point].w));
     return q;
 }
 

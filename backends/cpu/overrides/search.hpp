@@ -75,6 +75,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.needs_photon_normals = s.leaks.needs_photon_normals();
     j.min_cosine = s.leaks.min_cosine;
     j.flattening = s.leaks.flattening > 1 ? s.leaks.flattening * s.leaks.flattening - 1.0f : 0.0f;
+    j.half_spaces = s.half_spaces;
     if (j.side)
         j.directions = device.components(photons.directions);
     if (j.needs_photon_normals)
@@ -83,7 +84,7 @@ inline search_job make_search_job(const detail::search_inputs<cpu_backend>& in, 
     j.points = device.elements(*in.points).data();
     j.in_plane = s.biases && in.normals != nullptr;
     j.bias_factor = detail::bias_factor(s.filter);
-    if (s.leaks.needs_point_normals() || j.in_plane)
+    if (s.leaks.needs_point_normals() || j.in_plane || j.half_spaces)
         j.point_normals = device.elements(*in.normals).data();
     j.order = device.elements(order).data();
     j.search = s.search;

@@ -3,6 +3,7 @@
 
 #include <photongrid/backends/cpu/buffer.hpp>
 #include <photongrid/estimate/estimate_settings.hpp>
+#include <photongrid/estimate/gather_photons.kernel.hpp>
 #include <photongrid/map/map_buffers.hpp>
 
 #include <span>
@@ -33,7 +34,8 @@ struct search_job {
     bool side = false;            ///< leak policies, see photon_distance.glsl
     bool needs_photon_normals = false;
     float min_cosine = -1;
-    float flattening = 0; ///< c^2 - 1
+    float flattening = 0;     ///< c^2 - 1
+    bool half_spaces = false; ///< points may have half spaces in the w of their normals (half_space.glsl)
     filter_kind filter = filter_kind::constant;
     float norm = 1;         ///< of the filter
     bool leave_out = false; ///< exclude the photon that sets the radius

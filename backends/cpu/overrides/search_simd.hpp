@@ -261,7 +261,7 @@ HWY_INLINE void search_or_grow(const search_job& j, std::size_t begin, std::size
 /// Searches for the points order[begin] to order[end - 1].
 inline void search_block(const search_job& j, std::size_t begin, std::size_t end)
 {
-    if (j.flattening > 0 || j.needs_photon_normals)
+    if (j.flattening > 0 || j.needs_photon_normals || j.half_spaces)
         search_or_grow<2>(j, begin, end);
     else if (j.side)
         search_or_grow<1>(j, begin, end);

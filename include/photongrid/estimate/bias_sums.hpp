@@ -81,7 +81,8 @@ namespace detail {
         const map_buffers<B>& m = *in_.map;
         return in_.device->template run_until_done<kernels::gather_bias>(
             {in_.points->size(), 0u,
-                in_.template map_switches<kernels::gather_bias>() | in_.template together<kernels::gather_bias>()},
+                in_.template map_switches<kernels::gather_bias>() | in_.template halved<kernels::gather_bias>()
+                    | in_.template together<kernels::gather_bias>()},
             {.grid = m.cells_of,
                 .leaks = in_.leaks(),
                 .min_radius2 = in_.min_radius2(),

@@ -3,7 +3,9 @@
 //
 // All sums are plain ones. Rounding adds less than 1e-6 of the light to them for 1,000 photons, and they are of use as
 // parts of the light.
+#include <photongrid/core/vector.glsl>
 #include <photongrid/estimate/bias_tally.glsl>
+#include <photongrid/estimate/half_space.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/map/block_tree.glsl>
@@ -21,6 +23,7 @@ struct Params {
 };
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
+SWITCH(10, HALVED) // points may have half spaces
 IN_GROUPS(8)
 INPUT(6, vec4, powers)       // rgb, W
 INPUT(7, vec4, boxes)        // block map: see block_tree.glsl
@@ -65,6 +68,7 @@ void kernel(uint i)
     precise vec4 bent = jump;
     uvec4 resume_at = cursor;
     bool finished = has_bias(tally);
+    HalfSpace before = half_space_of(vec4(n.x, n.y, n.z, HALVED ? n.w : 0.0f), sqrt(p.w));
 
     walk_visits = args.visits;
     walk_steps = args.ranges;
@@ -78,6 +82,8 @@ void kernel(uint i)
         float d2 = distance2_of(PHOTON_OF(LANE), from, n);                              \
         if (GROUP_LANES > 1u || d2 < radius2) {                                         \
             vec4 q = from_lane(chunk_position, LANE);                                   \
+            if (HALVED && is_beyond(before, q.x - p.x, q.y - p.y, q.z - p.z))           \
+                d2 = 3.4028234e38f;                                                     \
             vec4 power = from_lane(chunk_power, LANE);                                  \
             bool counts = d2 < radius2;                                                 \
             float t = d2 * inverse_disc2;                                               \

@@ -8,7 +8,9 @@
 //
 // Where the map holds a photon s times, each entry has 1 / s of its power. The photon appears as s fully correlated
 // entries, so its variance is s times the sum of their squares.
+#include <photongrid/core/vector.glsl>
 #include <photongrid/estimate/gather_tally.glsl>
+#include <photongrid/estimate/half_space.glsl>
 #include <photongrid/estimate/row_cursor.glsl>
 #include <photongrid/estimate/search_radius.glsl>
 #include <photongrid/estimate/search_tally.glsl>
@@ -26,6 +28,7 @@ struct Params {
 };
 PARAMS(Params)
 #include <photongrid/estimate/search_inputs.glsl>
+SWITCH(10, HALVED) // points may have half spaces
 #include <photongrid/estimate/filter.glsl>
 SWITCH(3, LEAVE_OUT)
 SWITCH(4, ERRORS) // compute the squares too
@@ -103,6 +106,7 @@ void kernel(uint i)
         excluded_power = powers(past_excluded - 1u);
     }
     bool finished = is_gathered(tally);
+    HalfSpace before = half_space_of(vec4(n.x, n.y, n.z, HALVED ? n.w : 0.0f), sqrt(p.w));
 
     walk_visits = args.visits;
     walk_steps = args.ranges;
@@ -116,6 +120,10 @@ void kernel(uint i)
 #define VISIT(LANE)                                                                        \
     {                                                                                      \
         float d2 = distance2_of(PHOTON_OF(LANE), from, n);                                 \
+        if (HALVED) {                                                                      \
+            vec4 q = from_lane(chunk_position, LANE);                                      \
+            d2 = is_beyond(before, q.x - p.x, q.y - p.y, q.z - p.z) ? 3.4028234e38f : d2;  \
+        }                                                                                  \
         if (GROUP_LANES > 1u || d2 <= radius2) {                                           \
             uint at = from_lane(chunk_place, LANE);                                        \
             uint id = from_lane(chunk_id, LANE);                                           \

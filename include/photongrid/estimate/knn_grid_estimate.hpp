@@ -116,9 +116,9 @@ private:
     uint gather_switches() const
     {
         const auto& s = in_.s;
-        return in_.template map_switches<K>() | in_.template repeats<K>() | detail::filter_switch(s.filter)
-            | (s.bias == bias_kind::unbiased ? K::LEAVE_OUT_switch : 0u) | (s.errors ? K::ERRORS_switch : 0u)
-            | in_.template together<K>();
+        return in_.template map_switches<K>() | in_.template halved<K>() | in_.template repeats<K>()
+            | detail::filter_switch(s.filter) | (s.bias == bias_kind::unbiased ? K::LEAVE_OUT_switch : 0u)
+            | (s.errors ? K::ERRORS_switch : 0u) | in_.template together<K>();
     }
 
     progress run_stage(uint passes);

@@ -31,6 +31,9 @@ struct knn_settings {
     /// the loops around those over photons and rows.
     uint visits_per_pass = 3072;
     uint ranges_per_pass = 896; ///< the most rows of cells or boxes that one query reads in a pass, at least 2
+    /// radii_at_points: photons beyond a plane do not count, which the w of a point's normal gives, or 0 for none
+    /// (half_space.glsl).
+    bool half_spaces = false;
 };
 
 /// The paper's choice (2.3): at least k, constant filter, no leak policy. k, radii and errors are unchanged.
@@ -61,6 +64,9 @@ namespace detail {
             throw std::invalid_argument("knn_search: max_radius, min_radius: NaN");
         if (s.radii_at_points && s.search != search_kind::fixed_radius)
             throw std::invalid_argument("knn_search: radii_at_points: only search_kind::fixed_radius has given radii");
+        if (s.half_spaces && (!s.radii_at_points || normals < points))
+            throw std::invalid_argument(
+                "knn_search: half_spaces: needs radii_at_points and the surface normal of every query point");
         if (s.search == search_kind::fixed_radius && !s.radii_at_points && std::isinf(s.max_radius) && s.max_radius > 0)
             throw std::invalid_argument(
                 "knn_search: max_radius: infinite; search_kind::fixed_radius takes all photons within it, so set one");
@@ -180,6 +186,12 @@ namespace detail {
         uint map_switches() const
         {
             return policies<K>() | blocks<K>();
+        }
+        /// The SWITCH of kernel K for points with half spaces.
+        template <class K>
+        uint halved() const
+        {
+            return s.half_spaces ? K::HALVED_switch : 0u;
         }
         /// The SWITCH of kernel K for maps that may hold a photon several times.
         template <class K>

@@ -21,7 +21,7 @@ namespace photongrid {
 struct disc_probing {
     filter_kind filter;
     float min_cosine;  ///< of normals on the same surface: leak_policy::min_cosine
-    bool clips = true; ///< a disc may be cut down, so that nothing behind a wall is in it
+    bool clips = true; ///< discs may end at half spaces or be cut down, so that nothing behind a wall is in them
 };
 
 /// Discs on surfaces.
@@ -29,7 +29,8 @@ template <backend B>
 struct probed_discs {
     buffer_of<B, glm::vec4> points; ///< w: squared radius, m^2, of the discs that may have been cut down
     buffer_of<B, glm::vec4> cover;  ///< x: share on the surface, 0 to 1, weighted by the filter; y: 1: it is known
-    buffer_of<B, uint> cut;         ///< SEARCHED: the disc was cut down, else KEPT (pixel_tile.glsl)
+    buffer_of<B, uint> cut; ///< SEARCHED: the disc was cut down or has a half space, else KEPT (pixel_tile.glsl)
+    buffer_of<B, glm::vec4> normals; ///< those given; w: knn_settings::half_spaces
 };
 
 namespace detail {
@@ -100,10 +101,10 @@ probed_discs<B> probe_discs(B& device, const device_scene<B>& s, const buffer_of
         const auto [places, place_normals] = few.gather(device, points, normals);
         discs = detail::probe_closely(device, s, places, place_normals, how);
     }
-    probed_discs<B> probed{
-        device.template make<glm::vec4>(n), device.template make<glm::vec4>(n), device.template make<uint>(n)};
-    device.template run<kernels::probed_point>(
-        n, {}, reads(points, looked, few.words, few.sums, discs), writes(probed.points, probed.cover, probed.cut));
+    probed_discs<B> probed{device.template make<glm::vec4>(n), device.template make<glm::vec4>(n),
+        device.template make<uint>(n), device.template make<glm::vec4>(n)};
+    device.template run<kernels::probed_point>(n, {}, reads(points, looked, few.words, few.sums, discs, normals),
+        writes(probed.points, probed.cover, probed.cut, probed.normals));
     return probed;
 }
 

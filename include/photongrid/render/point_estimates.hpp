@@ -144,9 +144,11 @@ knn_estimates<B> point_estimates<B>::corrected_by_probes(knn_estimates<B> found)
     const auto probed = probe_discs(
         device_, *from_.scene, discs, normals_, {from_.search.filter, from_.search.leaks.min_cosine, have_radii});
     if (const detail::marked_points<B> cut(device_, probed.cut); cut.count > 0) {
-        const auto [places, place_normals] = cut.gather(device_, probed.points, normals_);
-        running_search<B> again(device_, *from_.map, places, place_normals, from_.search_in_map(),
-            running_estimate_kind::none, step_size::largest);
+        const auto [places, place_normals] = cut.gather(device_, probed.points, probed.normals);
+        auto halved = from_.search_in_map();
+        halved.half_spaces = true;
+        running_search<B> again(
+            device_, *from_.map, places, place_normals, halved, running_estimate_kind::none, step_size::largest);
         while (!again.advance()) {}
         detail::take_estimates(device_, glm::uvec2(static_cast<uint>(n), 1), probed.cut, cut, again.take(), found);
     }

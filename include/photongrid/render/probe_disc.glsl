@@ -5,8 +5,10 @@
 //     along the surface, a little above it: a wall?
 //     if there is one, from there on: its far side? It is solid up to there if the ray enters at a front and leaves at
 //     a back, and so does one from inside it upwards: a tube that stands on the surface is not solid
-//     down from beyond it: a surface there, whose photons would count? Then the disc is cut down to where that begins;
-//     behind a sheet, which has no far side, it counts as if there were no wall
+//     if it is of glass, light passes it, and another light is behind it: the disc ends at its plane, as below
+//     down from beyond it: a surface there, whose photons would count? Then the disc ends at the wall's plane
+//     (half_space.glsl), and it is probed again. Where there are photons before the plane, but behind another wall,
+//     the disc is cut down to where they begin; behind a sheet, which has no far side, as if there were no wall
 //     without a wall, down from the rim: still the same surface? If not, halfway, until it is known where it ends
 //
 // The share is the mean over the directions of the filter's mass up to there. They are even, and turned by a random
@@ -18,11 +20,12 @@
 // as large as a disc.
 #include <photongrid/core/vector.glsl>
 #include <photongrid/core/random.glsl>
+#include <photongrid/estimate/half_space.glsl>
 #include <photongrid/trace/scene_layout.glsl>
 
 struct Params {
     uint filter_number; // of the estimate
-    uint clips;         // 1: the disc may be cut down
+    uint clips;         // 1: the disc may end at a half space or be cut down
     float min_cosine;   // of normals on the same surface (leak_policy)
 };
 PARAMS(Params)
@@ -36,10 +39,11 @@ INPUT(4, vec4, points)      // xyz, m; w: squared radius of the disc, m^2; 0 or 
 INPUT(5, vec4, normals)
 STATE(0, vec4, origin)    // of the ray in flight; w: its length, 0: there is none
 STATE(1, vec4, direction) // xyz: unit vector; w: how far the ray along the surface had come before, m
-STATE(2, vec4, probed)    // x: share of the disc so far; w: its radius over that of `points`
+STATE(2, vec4, probed)    // x: share of the disc so far; w: its radius over that of `points`; y: its half space
+                          // (half_space.glsl)
 STATE(3, vec4, border)    // zw: bounds of where the surface ends in this direction, along the plane, over the radius;
-                          // y: distance over that, of what was last found of it; x: 1: the wall was met at a front;
-                          // after that, that its far side is in the disc
+                          // y: distance over that, of what was last found of it; at a wall the half space before it;
+                          // x: 1: the wall was met at a front; after that, that its far side is in the disc
 STATE(4, vec4, firsts)    // where it ends in the first four directions
 STATE(5, vec4, progress)  // x: number of the direction; y: what the ray looks for; z: how many of four directions and
                           // their opposites are narrow together; w: the least width, in radii
@@ -141,19 +145,33 @@ void send_up(uint i, float rho)
     send(above_surface(i, rho), vec3(normals(i)), 3.0e38f, 0.0f, INSIDE);
 }
 
-void begin(uint i, float share_of_radius)
+HalfSpace half_space(uint i)
 {
-    probed = vec4(0.0f, 0.0f, 0.0f, share_of_radius);
+    vec3 n = vec3(normals(i));
+    return half_space_of(vec4(n.x, n.y, n.z, probed.y), radius_of(i));
+}
+
+// `code`: of the half space.
+void begin(uint i, float share_of_radius, float code)
+{
+    probed = vec4(0.0f, code, 0.0f, share_of_radius);
     border = vec4(0.0f, 1.0f, 0.0f, 1.0f);
     firsts = border;
     progress = vec4(0.0f, GLANCE, 0.0f, 2.0f);
     glance_along(i);
 }
 
-// The surface ends at distance rho in this direction: on to the next one.
-void end_direction(uint i, float rho)
+// The surface ends at distance `far` in this direction, in radii: on to the next one.
+void end_direction(uint i, float far)
 {
     float number = progress.x;
+    float rho = far;
+    if (probed.y > 0.0f) {
+        HalfSpace before = half_space(i);
+        float towards = dot3(before.way, way_along(i, number, DIRECTIONS));
+        precise float plane = before.far / (max(towards, 1.0e-6f) * radius_of(i));
+        rho = min(rho, plane);
+    }
     precise float share = probed.x + 0.125f * mass_within(rho);
     if (number == 0.0f)
         firsts.x = rho;
@@ -181,11 +199,42 @@ void end_direction(uint i, float rho)
     }
     precise float cut_down = probed.w * progress.w;
     if (progress.z >= 3.0f && args.clips != 0u && probed.w > LEAST) {
-        begin(i, max(cut_down, LEAST));
+        begin(i, max(cut_down, LEAST), 0.0f);
         return;
     }
     origin.w = 0.0f;
     progress.y = FINISHED;
+}
+
+// The half space before a wall that has this normal, at a point in this way; 0: the wall is no wall.
+float half_space_before(uint i, vec3 m, vec3 way, float radius)
+{
+    vec3 n = vec3(normals(i));
+    float rise = dot3(m, n);
+    precise vec3 along = n * rise - m;
+    float length2 = dot3(along, along);
+    if (!(length2 > 1.0e-4f))
+        return 0.0f;
+    precise float length = sqrt(length2);
+    precise float share = dot3(along, way) / (length * radius);
+    return half_space_code(n, along, share);
+}
+
+// There is a surface with photons beyond the wall.
+void meet_leak(uint i, vec3 there)
+{
+    precise vec3 way = there - vec3(points(i));
+    precise float cut_down = probed.w * border.w * ASLANT;
+    if (args.clips == 0u)
+        end_direction(i, WHOLE); // as if there were no wall
+    else if (probed.y > 0.0f && is_beyond(half_space(i), way.x, way.y, way.z))
+        end_direction(i, border.z);
+    else if (probed.y == 0.0f && border.y > 0.0f)
+        begin(i, probed.w, border.y);
+    else if (border.x > 0.0f && probed.w > LEAST)
+        begin(i, max(cut_down, LEAST), 0.0f);
+    else
+        end_direction(i, WHOLE);
 }
 
 // The ray along the surface has met something or nothing.
@@ -199,13 +248,25 @@ void meet_wall(uint i, bool met, Hit hit)
     }
     precise float come = direction.w + hit.t;
     precise float rho = come / radius;
-    if (GLASS && hit.material != NO_MATERIAL && is_glass(material_of(hit.material))) {
-        send(ray_start(hit, d), d, radius - come, come, WALL); // light passes it
-        return;
-    }
     vec3 m = dot3(hit.normal, d) < 0.0f ? hit.normal : -hit.normal;
     if (dot3(m, vec3(normals(i))) >= args.min_cosine) {
         end_direction(i, WHOLE); // the surface rises
+        return;
+    }
+    precise vec3 way = hit.position - vec3(points(i));
+    precise float slack = HEIGHT * radius;
+    HalfSpace before = half_space(i);
+    if (probed.y > 0.0f && is_beyond(before, way.x + slack * before.way.x, way.y + slack * before.way.y,
+            way.z + slack * before.way.z)) {
+        end_direction(i, rho); // all that follows is beyond the plane
+        return;
+    }
+    border.y = half_space_before(i, m, way, radius);
+    if (GLASS && hit.material != NO_MATERIAL && is_glass(material_of(hit.material))) { // there is light behind it
+        if (args.clips != 0u && probed.y == 0.0f && border.y > 0.0f)
+            begin(i, probed.w, border.y);
+        else
+            send(ray_start(hit, d), d, radius - come, come, WALL);
         return;
     }
     border.x = dot3(hit.normal, d) < 0.0f ? 1.0f : 0.0f;
@@ -217,7 +278,7 @@ void kernel(uint i)
 {
     if (progress.y == BEGINS) {
         if (points(i).w > 1.2e-38f) // what shrunk_radius.glsl makes of 0 is no radius
-            begin(i, 1.0f);
+            begin(i, 1.0f, 0.0f);
         else
             progress.y = FINISHED;
         return;
@@ -251,12 +312,10 @@ void kernel(uint i)
         else
             send_down(i, border.w + 0.1f, BEYOND);
     } else if (progress.y == BEYOND) {
-        bool leaks = met && holds_photons(i, hit, d);
-        precise float cut_down = probed.w * border.w * ASLANT;
-        if (leaks && border.x > 0.0f && args.clips != 0u && probed.w > LEAST)
-            begin(i, max(cut_down, LEAST));
+        if (met && holds_photons(i, hit, d))
+            meet_leak(i, hit.position);
         else
-            end_direction(i, leaks ? WHOLE : border.z); // as if there were no wall
+            end_direction(i, border.z);
     } else {
         bool holds = met && holds_photons(i, hit, d);
         if (progress.y == RIM) {
