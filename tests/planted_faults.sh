@@ -128,6 +128,7 @@ faults=(
   "probed discs are not cut down at walls|include/photongrid/render/probe_disc.glsl|border.x > 0.0f && probed.w > LEAST|border.x > 1.0f && probed.w > LEAST"
   "probed discs have no half spaces|include/photongrid/render/probed_point.glsl|normal.w = disc.y|normal.w = 0.0f * disc.y|on_serial_pictures"
   "discs go on below glass|include/photongrid/render/probe_disc.glsl|args.clips != 0u && probed.y == 0.0f && border.y > 0.0f|args.clips > 1u|on_serial_pictures"
+  "noise of one neighbour|include/photongrid/render/film.hpp|std::min(e, largest_near)|std::max(e, largest_near)"
   "shares ignore half spaces|include/photongrid/render/probe_disc.glsl|rho = min(rho, plane);|rho = min(rho, 2.0f * plane);"
   "probed discs are not cut down to narrow surfaces|include/photongrid/render/probe_disc.glsl|progress.z >= 3.0f|progress.z >= 5.0f"
   "probed surfaces never end|include/photongrid/render/probe_disc.glsl|met && holds_photons(i, hit, d);|true;"

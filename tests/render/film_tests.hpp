@@ -111,6 +111,32 @@ TEST(film, is_the_mean_and_its_noise_the_spread_of_groups)
     }
 }
 
+TEST(film, noise_is_no_less_than_a_quarter_of_what_two_neighbours_have)
+{
+    // The light differs from pass to pass in three pixels of a row: the two in the middle have neighbours in common.
+    constexpr std::uint32_t wide = 7, high = 5, at = 2 * wide;
+    film f(wide, high, 1, true);
+    std::mt19937_64 random(3);
+    std::lognormal_distribution<float> light;
+    for (std::uint32_t pass = 0; pass < 16; ++pass) {
+        auto p = random_pass(pass, wide * high, true);
+        p.pixels.assign(wide * high, glm::vec4(1));
+        for (const std::uint32_t x : {0u, 3u, 5u})
+            p.pixels[at + x] = glm::vec4(light(random));
+        f.add(pass, p);
+    }
+    const auto noise = f.picture().picture.layers.noise;
+    const float told = std::min(noise[at + 3], noise[at + 5]) / 4;
+    EXPECT_GT(told, 0.01f);
+    for (std::uint32_t i = 0; i < wide * high; ++i) {
+        const bool between = i == at + 4 || i == at + 4 - wide || i == at + 4 + wide;
+        const bool varies = i == at || i == at + 3 || i == at + 5;
+        if (!varies) {
+            EXPECT_EQ(noise[i], between ? told : 0.0f) << i << ": one noisy neighbour tells nothing";
+        }
+    }
+}
+
 /// Of passes of one number a pixel: the root mean square of what the film reports as the noise of their mean, and of
 /// what it is.
 template <class Value>

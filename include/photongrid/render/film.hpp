@@ -354,13 +354,13 @@ private:
     {
         const double n = static_cast<double>(passes_.size());
         auto& layers = out.picture.layers;
+        if (layers_)
+            layers.noise = noise();
         for (std::size_t i = 0; i < sums_.size(); ++i) {
             const auto& sum = sums_[i];
             out.invalid_pixels += sum.invalid;
             const glm::dvec3 total(sum.rgb[0].value(), sum.rgb[1].value(), sum.rgb[2].value());
             out.picture.pixels.emplace_back(total * (unit_ / n));
-            if (layers_)
-                layers.noise.push_back(static_cast<float>(standard_error_of(i)));
         }
         for (const auto& sum : layer_sums_) {
             const double searches = sum.searches.value(), mean = searches > 0 ? 1 / searches : 0;
@@ -376,6 +376,29 @@ private:
         if (sums_[pixel].spread_is_unknown != 0)
             return std::numeric_limits<double>::infinity();
         return std::sqrt(groups_.variance_of_mean(pixel)) / 3 * unit_;
+    }
+    /// The standard errors of all pixels, each no less than a quarter of those of two neighbours: what they see, as the
+    /// edge of a lamp, the pixel may only not have met yet.
+    std::vector<float> noise() const
+    {
+        // With a frame of zeros round the picture.
+        const std::size_t row = std::size_t{width_} + 2;
+        std::vector<float> own(row * (std::size_t{height_} + 2)), told(sums_.size());
+        for (std::size_t y = 0, i = 0; y < height_; ++y)
+            for (std::size_t x = 0; x < width_; ++x, ++i)
+                own[(y + 1) * row + x + 1] = static_cast<float>(standard_error_of(i));
+        for (std::size_t y = 0, i = 0; y < height_; ++y)
+            for (std::size_t x = 0; x < width_; ++x, ++i) {
+                const float* const at = &own[(y + 1) * row + x + 1];
+                float largest_near = 0, second = 0;
+                for (const float* const near : {at - row, at, at + row})
+                    for (const float e : {near[-1], near == at ? 0.0f : near[0], near[1]}) {
+                        second = std::max(second, std::min(e, largest_near));
+                        largest_near = std::max(largest_near, e);
+                    }
+                told[i] = std::isinf(second) ? *at : std::max(*at, 0.25f * second);
+            }
+        return told;
     }
 
     // Terms of exact_sum are below 2^46.
