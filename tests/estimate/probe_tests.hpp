@@ -358,6 +358,9 @@ TYPED_TEST_P(probed_edges, let_no_light_through_a_wall)
         {0, 0, 0}, {0, 0, 0}, {-1, 0, 0}});
     walls.back().s.materials.push_back({"glass", material_kind::glass, dvec3(1), 1.5});
     walls.back().s.boxes.push_back({{-1, 0, -1}, {1, 0, 0}, {0, 0.3, 0}, {0, 0, 2}, 1});
+    walls.push_back({"a wall that hovers by 5 mm", empty_scene({0.5, 1.5, 0.5}),
+        [](const dvec3& p) { return p.x < -0.05; }, {-0.05, 0, 0}, {0.05, 0, 0}, {-1, 0, 0}});
+    walls.back().s.boxes.push_back({{-0.05, 0.005, -1}, {0.1, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0});
     walls.push_back({"a pipe", empty_scene({0.5, 1.5, 0.5}), [](const dvec3& p) { return glm::length(p) > 0.5; },
         {0.5, 0, 0}, {0.45, 0, 0}, {1, 0, 0}});
     for (const double radius : {0.5, 0.45})

@@ -2,7 +2,7 @@
 // (glance.glsl) has not seen that it is whole. In each of eight directions, one after the other:
 //
 //     slanted, as at a glance: the same surface at the rim, and nothing before it? Then that is all
-//     along the surface, a little above it: a wall?
+//     along the surface, a little above it, or as high as that ray met something: a wall?
 //     if there is one, from there on: its far side? It is solid up to there if the ray enters at a front and leaves at
 //     a back, and so does one from inside it upwards: a tube that stands on the surface is not solid
 //     if it is of glass, light passes it, and another light is behind it: the disc ends at its plane, as below
@@ -112,13 +112,20 @@ void send(vec3 from, vec3 d, float far, float come, float what)
     progress.y = what;
 }
 
+// Over the surface, m.
+float height_of(uint i, vec3 there)
+{
+    precise vec3 way = there - vec3(points(i));
+    return dot3(way, vec3(normals(i)));
+}
+
 void glance_along(uint i)
 {
     Slanted s = slanted_ray(i, progress.x, DIRECTIONS, radius_of(i));
     send(s.from, s.d, s.far, 0.0f, GLANCE);
 }
 
-// Where the ray along the surface is at distance rho, in radii.
+// A little above the surface at distance rho, in radii.
 vec3 above_surface(uint i, float rho)
 {
     vec3 p = vec3(points(i));
@@ -127,9 +134,13 @@ vec3 above_surface(uint i, float rho)
     return ray_at(ray_at(p, vec3(normals(i)), height_at(p, radius)), way_along(i, progress.x, DIRECTIONS), along);
 }
 
-void send_along(uint i)
+// `met`: the height at which the slanted ray met something, m, which may hover as a glass that stands on a table, or 0.
+void send_along(uint i, float met)
 {
-    send(above_surface(i, 0.0f), way_along(i, progress.x, DIRECTIONS), radius_of(i), 0.0f, WALL);
+    vec3 p = vec3(points(i));
+    float radius = radius_of(i);
+    vec3 from = ray_at(p, vec3(normals(i)), max(met, height_at(p, radius)));
+    send(from, way_along(i, progress.x, DIRECTIONS), radius, 0.0f, WALL);
 }
 
 // Down from there to the surface.
@@ -292,7 +303,7 @@ void kernel(uint i)
         if (met && is_at_rim(i, hit.position, radius_of(i)) && holds_photons(i, hit, d))
             end_direction(i, WHOLE);
         else
-            send_along(i);
+            send_along(i, met ? height_of(i, hit.position) : 0.0f);
     } else if (progress.y == WALL) {
         meet_wall(i, met, hit);
     } else if (progress.y == FAR_SIDE) {

@@ -1,6 +1,6 @@
 // Ways along the surface at a point, for short rays. Included by kernels after core/random.glsl and
 // trace/scene_layout.glsl, and after their INPUTs scene, points and normals.
-const float HEIGHT = 0.02f; // of rays along the surface, in radii: what is lower is no wall
+const float HEIGHT = 0.02f; // of rays along the surface, in radii, at least
 
 // The height of rays along the surface at p.
 float height_at(vec3 p, float radius)
