@@ -128,12 +128,28 @@ class Reference:
             runner.run([program, "reference", path, "--size", f"{size}x{size}", *arguments, "--quiet",
                         "-o", self.path + ".part.pfm", "--error", error])
             os.replace(self.path + ".part.pfm", self.path)
-        self.width, self.values = read_picture(self.path)
+        self.read(size)
         _, errors = read_picture(error)
         self.noise = sum((e / (b + FLOOR))**2 for e, b in zip(errors, self.values)) / len(errors)
+
+    def read(self, size):
+        self.width, self.values = read_picture(self.path)
         self.blocks = max(size // 16, 1)
         self.coarse = block_means(self.width, self.values, self.blocks)
         self.mean = sum(self.values) / len(self.values)
+
+
+class PeerReference(Reference):
+    """A converged picture by another program; its noise is not known."""
+    noise = 0
+
+    def __init__(self, runner, peer, size, folder):
+        self.path = os.path.join(folder, "references", f"{peer.scene.name}-{size}-{peer.executable}.pfm")
+        if not os.path.exists(self.path):
+            part = self.path + ".part.pfm"
+            runner.run(*peer.reference(size, part))
+            os.replace(part, self.path)
+        self.read(size)
 
 
 class Point:

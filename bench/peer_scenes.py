@@ -202,10 +202,14 @@ class Scene:
         m = self.materials[name]
         known = {"type", "comment", "reflectance", "transmittance", "index_of_refraction"}
         usual = {"roughness": 0, "opacity": 1}
+        white = [1, 1, 1]
+        if m["type"] in ("metal", "plastic") and m.get("energy", "single") == "single":
+            rough = m.get("roughness", 0)
+            if m["type"] == "plastic" or rough > 0:
+                return ("plastic" if m["type"] == "plastic" else "satin"), m["reflectance"], rough**2
         other = sorted(key for key in m if key not in known and (key not in usual or m[key] != usual[key]))
         if other:
             raise Unsupported(f"material {name}: {', '.join(other)}")
-        white = [1, 1, 1]
         if m["type"] == "lambertian":
             return "matte", m["reflectance"], None
         if m["type"] in ("mirror", "metal"):
@@ -301,8 +305,17 @@ def to_pbrt(scene):
         kind, colour, index = scene.material(name)
         values = {"matte": f'"rgb Kd" [ {numbers(colour)} ] "float sigma" [ 0 ]',
                   "mirror": f'"rgb Kr" [ {numbers(colour)} ]',
-                  "glass": f'"rgb Kr" [ {numbers(colour)} ] "rgb Kt" [ {numbers(colour)} ] "float index" [ {index} ]'}
-        world += f'MakeNamedMaterial "{name}" "string type" [ "{kind}" ] {values[kind]}\n'
+                  "glass": f'"rgb Kr" [ {numbers(colour)} ] "rgb Kt" [ {numbers(colour)} ] "float index" [ {index} ]',
+                  # The metal reflects all; the other half of the mix nothing. Our coat is another than pbrt's.
+                  "satin": f'"rgb amount" [ {numbers(colour)} ] "string namedmaterial1" [ "{name} all" ] '
+                           f'"string namedmaterial2" [ "none" ]',
+                  "plastic": f'"rgb Kd" [ {numbers(colour)} ] "rgb Ks" [ 1 1 1 ] "float roughness" [ '
+                             f'{max(index or 0, 1e-4)} ] "bool remaproughness" [ "false" ]'}
+        if kind == "satin":
+            world += (f'MakeNamedMaterial "{name} all" "string type" [ "metal" ] "rgb eta" [ 1 1 1 ] "rgb k" '
+                      f'[ 1e4 1e4 1e4 ] "float roughness" [ {index} ] "bool remaproughness" [ "false" ]\n'
+                      'MakeNamedMaterial "none" "string type" [ "matte" ] "rgb Kd" [ 0 0 0 ]\n')
+        world += f'MakeNamedMaterial "{name}" "string type" [ "{kind.replace("satin", "mix")}" ] {values[kind]}\n'
     for kind, what, material in scene.shapes:
         world += f'AttributeBegin\nNamedMaterial "{material}"\n'
         if kind == "mesh":

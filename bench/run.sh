@@ -144,7 +144,7 @@ if [[ $gpu == yes ]]; then
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
-  for section in algorithms clusters defaults edges error estimates gather inclusion lamps panes pictures window; do
+  for section in algorithms clusters defaults edges error estimates gather inclusion lamps panes pictures water window; do
     must $sections $section --quick
   done
   must $sections convergence --quick cpu
@@ -212,6 +212,7 @@ if asked estimates; then
   measure "Edge correction" $sections edges
   measure "One lamp and a hundred" $sections lamps
   measure "Surfaces under a pane of glass" $sections panes
+  measure "A glass of water with ice" $sections water
   measure "Indirect light and caustics: one map, a final gather, shrinking radii" $sections gather
 fi
 if asked error; then

@@ -33,6 +33,9 @@
   ring                     the ring's caustic by POV-Ray's photons and by ours: how far the brightest parts overlap
   stages BACKEND...        whole pictures by stage
   table1 [BACKEND...]      the paper's Table 1. Default: serial vulkan gl
+  water [BACKEND...]       a glass of water with ice as nested bodies, against pbrt-v3's paths through its interfaces:
+                           relMSE of 16 x 16 blocks. FAIL: over twice what the noise of both explains. PHOTONGRID_PEERS
+                           names the folder with pbrt; without it the other picture is the reference's. Default: cpu
   window [BACKEND...]      does the window answer while passes run? On a display of its own (Xvfb), the camera turned by
                            the mouse for some three seconds. Too slow: over one look at events in a hundred takes longer
                            than a thirtieth of a second. Default: cpu vulkan
@@ -54,6 +57,9 @@ import sys
 import tempfile
 import time
 import traceback
+
+from error_curves import block_means, pixel_errors, read_picture
+from made_scenes import write_scene
 
 os.chdir(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BUILD = os.environ.get("PHOTONGRID_BUILD", "build-bench")
@@ -599,6 +605,49 @@ def panes(backends, quick):
                 verdict(quick or all(abs(share - 1) <= 0.03 for share in shares)))
 
 
+def water(backends, quick):
+    size, pbrt = 32 if quick else 128, os.path.join(os.environ.get("PHOTONGRID_PEERS", ""), "pbrt")
+    scene = write_scene("glass_of_water", WORK)
+    picture = f"{WORK}/water.pfm"
+
+    def blocks(*command):
+        said(*command)
+        return block_means(*read_picture(picture), size // 16)
+
+    def by(command, *options):
+        return lambda seed: blocks(PROGRAM, command, scene, "--size", f"{size}x{size}", "--quiet", "-o", picture,
+                                   "--seed", seed, *options)
+
+    def by_pbrt(seed):
+        with open(f"{WORK}/water.pbrt", "w", encoding="utf-8") as f:
+            f.write(f'Film "image" "integer xresolution" [ {size} ] "integer yresolution" [ {size} ] "string filename" '
+                    f'"{picture}"\nPixelFilter "box"\nIntegrator "path" "integer maxdepth" [ 64 ]\n'
+                    f'Sampler "{("halton", "random")[seed - 1]}" "integer pixelsamples" [ {16 if quick else 1024} ]\n'
+                    f'Include "{scene.replace(".json", ".pbrt")}"\n')
+        return blocks(pbrt, "--quiet", f"{WORK}/water.pbrt")
+
+    def drawn_twice(draw):
+        """The mean of two pictures, and its noise."""
+        one, other = draw(1), draw(2)
+        return [(a + b) / 2 for a, b in zip(one, other)], statistics.mean(pixel_errors(one, other)) / 4
+
+    judge = by("reference", "--spp", 16 if quick else 512)
+    if os.access(pbrt, os.X_OK):
+        judge = by_pbrt
+    else:
+        print("sections.py: water: SKIPPED pbrt-v3: PHOTONGRID_PEERS names no folder that has it", file=sys.stderr)
+    right, noise = drawn_twice(judge)
+    heading(["program", "relMSE of blocks", "noise of both", ""])
+    passes = 2 if quick else 64
+    ways = [(b, by("render", "--backend", b, "--spp", 4, "--passes", passes)) for b in backends or ["cpu"]]
+    if judge is by_pbrt:
+        ways.append(("reference", by("reference", "--spp", 16 if quick else 512)))
+    for name, draw in ways:
+        ours, own = drawn_twice(draw)
+        error = statistics.mean(pixel_errors(ours, right))
+        row(name, f"{error:.2g}", f"{own + noise:.2g}", verdict(quick or error <= 2 * (own + noise)))
+
+
 def povray(scene, photons, picture, *options):
     """POV-Ray's picture of a scene; returns its seconds."""
     need("povray", "povray")
@@ -716,7 +765,7 @@ def window(backends, quick):
 
 
 SECTIONS = {f.__name__: f for f in (algorithms, clusters, convergence, defaults, edges, error, estimates, figure7,
-                                    gather, inclusion, lamps, panes, pictures, ring, stages, table1, window)}
+                                    gather, inclusion, lamps, panes, pictures, ring, stages, table1, water, window)}
 
 if __name__ == "__main__":
     if len(sys.argv) < 2 or sys.argv[1] not in SECTIONS:

@@ -24,7 +24,7 @@ import argparse
 import os
 import sys
 
-from error_curves import Reference, Runner, curve_of, seconds_to, write_curves
+from error_curves import PeerReference, Reference, Runner, curve_of, seconds_to, write_curves
 from time_to_error_settings import PROGRAMS, Photongrid, SCENES, is_program, peers_of, photongrid_ways
 
 parser = argparse.ArgumentParser()
@@ -140,7 +140,8 @@ def measure(name):
                 continue
             kept = os.path.join(cache, "curves")
             try:
-                curve = curve_of(runner, peer, reference, scene, options.size, kept, options.peers)
+                own = PeerReference(runner, peer, options.size, cache) if scene.own_references else reference
+                curve = curve_of(runner, peer, own, scene, options.size, kept, options.peers)
             except (RuntimeError, OSError) as e:
                 say(f"time_to_error.py: SKIPPED {peer.name}, {name}: {e}")
                 continue

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 
+from made_scenes import write_scene
 from peer_scenes import Scene as ExportedScene, Unsupported, export
 
 
@@ -15,12 +16,16 @@ class Target:
 
 
 class Scene:
-    def __init__(self, name, targets, reference, clear_glass=False, folder=None):
+    """own_references: materials that programs model differently, so that each has its own converged picture."""
+
+    def __init__(self, name, targets, reference, clear_glass=False, folder=None, made=False, own_references=False):
         self.name, self.targets, self.reference = name, targets, reference
-        self.clear_glass, self.folder = clear_glass, folder
+        self.clear_glass, self.folder, self.made, self.own_references = clear_glass, folder, made, own_references
 
     def path(self, program, cache):
         """Its file, in photongrid's format; none if it is a scene of others that is not there."""
+        if self.made:
+            return write_scene(self.name, os.path.join(cache, "scenes"))
         here = f"examples/scenes/{self.name}.json"
         if not self.clear_glass and not self.folder:
             return here
@@ -51,6 +56,9 @@ SCENES = {s.name: s for s in (
     Scene("glass_ball", [Target(0.01, 10)], "--spp 1024 --caustics bins --paths 100000000", clear_glass=True),
     Scene("water_caustic", [Target(0.02, 5, rival="Tungsten PPM")], "--spp 1024 --caustics bins --paths 100000000",
           folder="water-caustic/pbrt/scene-v4.pbrt"),
+    Scene("satin_ring", [Target(0.03, 1), Target(0.01, 1)], "--spp 4096 --caustics bins --paths 100000000", made=True),
+    Scene("coffee_maker", [Target(0.03, 1), Target(0.01, 1)], "--spp 1024 --caustics bins --paths 20000000", made=True,
+          own_references=True),
 )}
 
 # Options of `photongrid render`, the best first: --passes is what grows.
@@ -105,6 +113,8 @@ WAYS = {
         "--spp 1 --k 50 --radii shrinking --photons 250000",
         "--spp 16 --k 20 --radii shrinking --photons 1000000",
     ],
+    "satin_ring": ["--spp 1 --k 100 --photons 16000"],
+    "coffee_maker": ["--spp 1 --k 100 --photons 16000"],
 }
 
 
@@ -218,6 +228,14 @@ class Pbrt(Peer):
                     'Include "world.pbrt"\n')
         return [self.binary, "--nthreads=2", "--quiet", run], None
 
+    def reference(self, size, picture):
+        """The command of a converged picture."""
+        kind, self.kind = self.kind, "bdpt"
+        try:
+            return self.command(1024, size, picture)
+        finally:
+            self.kind = kind
+
 
 class SmallVcm(Peer):
     executable = "smallvcm"
@@ -248,8 +266,12 @@ PEERS = {
     "water_caustic": [(Tungsten, "ppm", dict(photons=5000000, nearest=20, radius=0.05, alpha=0.3)),  # its author's
                       (Tungsten, "bdpt", dict(bounces=16)),
                       (Pbrt, "sppm", dict(photons=1000000, radius=0.01))],
+    "satin_ring": [(Pbrt, "sppm", dict(photons=16384, radius=0.03, depth=16)),
+                   (Pbrt, "sppm", dict(photons=65536, radius=0.02, depth=16)), (Pbrt, "bdpt", dict(depth=16))],
+    "coffee_maker": [(Pbrt, "sppm", dict(photons=16384, radius=0.03, depth=16)),
+                     (Pbrt, "sppm", dict(photons=65536, radius=0.02, depth=16)), (Pbrt, "bdpt", dict(depth=16))],
 }
-for _scene in PEERS:
+for _scene in ("cornell_blocks", "cornell_box", "ring", "glass_ball", "water_caustic"):
     # Its author's radius, and one that suits fewer paths.
     PEERS[_scene] += [(SmallVcm, kind, dict(radius=radius, alpha=0.75))
                       for kind, radius in (("ppm", 0.003), ("ppm", 0.01), ("bpm", 0.003), ("bpm", 0.01),
