@@ -144,7 +144,8 @@ if [[ $gpu == yes ]]; then
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
-  for section in algorithms clusters defaults edges error estimates gather inclusion lamps panes pictures water window; do
+  for section in algorithms clusters defaults edges error estimates gather inclusion lamps panes pictures water \
+    window; do
     must $sections $section --quick
   done
   must $sections convergence --quick cpu
