@@ -169,7 +169,6 @@ def interfaces():
     glass_to_water = turned([(INSIDE, LEVEL), (INSIDE, BOTTOM), (0, BOTTOM)])
     cube = floating()
     hole = [[p[0], LEVEL, p[2]] for p in cube.positions[:2] + cube.positions[4:6]]
-    hole = [hole[i] for i in (0, 1, 3, 2)]
     hole = sorted(hole, key=lambda p: math.atan2(-p[2], p[0]) % (2 * math.pi))
     rim = [[INSIDE * math.cos(2 * math.pi * i / AROUND), LEVEL, -INSIDE * math.sin(2 * math.pi * i / AROUND)]
            for i in range(AROUND)]

@@ -197,19 +197,20 @@ class Scene:
         u, v = (sub(p[j], p[i]) for j in corners if j != i)
         return abs(dot(u, v)) < 1e-3 * length(u) * length(v)
 
-    def material(self, name):
-        """Its kind (matte, mirror, glass), colour and index of refraction."""
+    def material(self, name, rough=False):
+        """Its kind (matte, mirror, glass), colour and index of refraction; if rough ones are allowed, also satin metal
+        and plastic, which have GGX's alpha in place of the index."""
         m = self.materials[name]
         known = {"type", "comment", "reflectance", "transmittance", "index_of_refraction"}
         usual = {"roughness": 0, "opacity": 1}
-        white = [1, 1, 1]
-        if m["type"] in ("metal", "plastic") and m.get("energy", "single") == "single":
-            rough = m.get("roughness", 0)
-            if m["type"] == "plastic" or rough > 0:
-                return ("plastic" if m["type"] == "plastic" else "satin"), m["reflectance"], rough**2
+        if rough and m["type"] == "plastic":
+            return "plastic", m["reflectance"], m.get("roughness", 0)**2
+        if rough and m["type"] == "metal" and m.get("energy") == "single" and m.get("roughness", 0) > 0:
+            return "satin", m["reflectance"], m["roughness"]**2
         other = sorted(key for key in m if key not in known and (key not in usual or m[key] != usual[key]))
         if other:
             raise Unsupported(f"material {name}: {', '.join(other)}")
+        white = [1, 1, 1]
         if m["type"] == "lambertian":
             return "matte", m["reflectance"], None
         if m["type"] in ("mirror", "metal"):
@@ -295,6 +296,11 @@ def pbrt_mesh(mesh):
     return text
 
 
+def pbrt_film(size, picture):
+    return (f'Film "image" "integer xresolution" [ {size} ] "integer yresolution" [ {size} ] "string filename" '
+            f'"{os.path.abspath(picture)}"\nPixelFilter "box"\n')
+
+
 def to_pbrt(scene):
     """The world, from WorldBegin on, and the camera."""
     # pbrt's camera is left-handed; the scale keeps the scene's axes.
@@ -302,7 +308,7 @@ def to_pbrt(scene):
     camera += f'Camera "perspective" "float fov" [ {scene.fov} ]\n'
     world = "WorldBegin\n"
     for name in scene.materials:
-        kind, colour, index = scene.material(name)
+        kind, colour, index = scene.material(name, rough=True)
         values = {"matte": f'"rgb Kd" [ {numbers(colour)} ] "float sigma" [ 0 ]',
                   "mirror": f'"rgb Kr" [ {numbers(colour)} ]',
                   "glass": f'"rgb Kr" [ {numbers(colour)} ] "rgb Kt" [ {numbers(colour)} ] "float index" [ {index} ]',

@@ -60,6 +60,7 @@ import traceback
 
 from error_curves import block_means, pixel_errors, read_picture
 from made_scenes import write_scene
+from peer_scenes import pbrt_film
 
 os.chdir(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BUILD = os.environ.get("PHOTONGRID_BUILD", "build-bench")
@@ -620,8 +621,7 @@ def water(backends, quick):
 
     def by_pbrt(seed):
         with open(f"{WORK}/water.pbrt", "w", encoding="utf-8") as f:
-            f.write(f'Film "image" "integer xresolution" [ {size} ] "integer yresolution" [ {size} ] "string filename" '
-                    f'"{picture}"\nPixelFilter "box"\nIntegrator "path" "integer maxdepth" [ 64 ]\n'
+            f.write(f'{pbrt_film(size, picture)}Integrator "path" "integer maxdepth" [ 64 ]\n'
                     f'Sampler "{("halton", "random")[seed - 1]}" "integer pixelsamples" [ {16 if quick else 1024} ]\n'
                     f'Include "{scene.replace(".json", ".pbrt")}"\n')
         return blocks(pbrt, "--quiet", f"{WORK}/water.pbrt")

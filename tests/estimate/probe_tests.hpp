@@ -96,6 +96,32 @@ protected:
         }
         return f;
     }
+    /// The mean of the estimates at points (recentred) with normals up. With a first map they have its radii, whose
+    /// squares are multiplied by share2.
+    double mean_light(const device_scene<B>& scene, const map_buffers<B>& light, uint k, edge_correction edges,
+        const std::vector<glm::vec4>& points, const map_buffers<B>* first, double share2)
+    {
+        auto& b = this->b();
+        const std::vector<glm::vec4> normals(points.size(), {0, 1, 0, 0});
+        const auto at = b.upload(std::span<const glm::vec4>(points)),
+                   up = b.upload(std::span<const glm::vec4>(normals));
+        estimate_sources<B> from;
+        from.scene = &scene;
+        from.map = &light;
+        from.search = {.k = k, .max_radius = 0.3f, .filter = filter_kind::silverman};
+        from.search.leaks = {.side = true, .min_cosine = 0.5f};
+        from.edges = edges;
+        if (first != nullptr) {
+            from.radii = {first, k};
+            from.share2 = share2;
+        }
+        point_estimates<B> e(b, from, at, up, running_estimate_kind::none, step_size::largest);
+        while (!e.advance()) {}
+        double sum = 0;
+        for (const auto& v : b.download(e.take().irradiance))
+            sum += static_cast<double>(v.x);
+        return sum / static_cast<double>(points.size());
+    }
     /// The largest error of the shares, and by how much the mean of estimates that are divided by them is too high, of
     /// random discs of 0.2 m on a convex surface.
     std::pair<double, double> errors(const scene& s, const std::vector<glm::dvec2>& corners)
@@ -288,34 +314,15 @@ TYPED_TEST_P(probed_edges, make_even_light_even_up_to_edges_and_walls)
                 return this->map_on_floor(scene, places, 1.0f / photons);
             };
             const auto light = map_of(), first = map_of();
-            std::vector<glm::vec4> points, normals;
+            std::vector<glm::vec4> points;
             for (int i = 0; i < 800; ++i) { // a frame of 0.04 m along the edges
                 dvec3 p(0.04 * static_cast<double>(u()), 0, static_cast<double>(u()));
                 for (int turn = i % 4; turn > 0; --turn)
                     p = dvec3(p.z, 0, 1 - p.x);
                 points.emplace_back(glm::vec3(p - scene.layout.center), 1.0f);
-                normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
             }
-            const auto at = b.upload(std::span<const glm::vec4>(points)),
-                       up = b.upload(std::span<const glm::vec4>(normals));
             const auto mean = [&](edge_correction edges, bool given) {
-                estimate_sources<typename TestFixture::B> from;
-                from.scene = &scene;
-                from.map = &light;
-                from.search = {.k = 400, .max_radius = 0.3f, .filter = filter_kind::silverman};
-                from.search.leaks = {.side = true, .min_cosine = 0.5f};
-                from.edges = edges;
-                if (given) {
-                    from.radii = {&first, 400};
-                    from.share2 = 0.7;
-                }
-                point_estimates<typename TestFixture::B> e(
-                    b, from, at, up, running_estimate_kind::none, step_size::largest);
-                while (!e.advance()) {}
-                double sum = 0;
-                for (const auto& v : b.download(e.take().irradiance))
-                    sum += static_cast<double>(v.x);
-                return sum / static_cast<double>(points.size());
+                return this->mean_light(scene, light, 400, edges, points, given ? &first : nullptr, 0.7);
             };
             for (const bool given : {false, true}) {
                 worst = std::max(worst, std::abs(mean(edge_correction::probes, given) - 1));
@@ -380,31 +387,15 @@ TYPED_TEST_P(probed_edges, let_no_light_through_a_wall)
         };
         const auto light = map_of(false), first = map_of(true);
         const auto mean = [&](bool lit, edge_correction edges) {
-            std::vector<glm::vec4> points, normals;
+            std::vector<glm::vec4> points;
             for (int i = 0; i < 200; ++i) {
                 dvec3 p = (lit ? w.lit + 0.05 * static_cast<double>(u()) * w.out
                                : w.dark - (0.001 + 0.05 * static_cast<double>(u())) * w.out);
                 const double turn = w.from + (w.to - w.from) * static_cast<double>(u());
                 p = w.out.x > 0 ? dvec3(p.x * std::cos(turn), 0, p.x * std::sin(turn)) : p + dvec3(0, 0, turn);
                 points.emplace_back(glm::vec3(p - scene.layout.center), 1.0f);
-                normals.emplace_back(0.0f, 1.0f, 0.0f, 0.0f);
             }
-            const auto at = b.upload(std::span<const glm::vec4>(points)),
-                       up = b.upload(std::span<const glm::vec4>(normals));
-            estimate_sources<typename TestFixture::B> from;
-            from.scene = &scene;
-            from.map = &light;
-            from.search = {.k = 3000, .max_radius = 0.3f, .filter = filter_kind::silverman};
-            from.search.leaks = {.side = true, .min_cosine = 0.5f};
-            from.edges = edges;
-            from.radii = {&first, 3000};
-            point_estimates<typename TestFixture::B> e(
-                b, from, at, up, running_estimate_kind::none, step_size::largest);
-            while (!e.advance()) {}
-            double sum = 0;
-            for (const auto& v : b.download(e.take().irradiance))
-                sum += static_cast<double>(v.x);
-            return sum / static_cast<double>(points.size());
+            return this->mean_light(scene, light, 3000, edges, points, &first, 1);
         };
         EXPECT_GT(mean(false, edge_correction::none), 0.0005) << w.name;
         EXPECT_LT(mean(false, edge_correction::probes), 0.001) << w.name;
