@@ -98,7 +98,7 @@ namespace {
         const auto add = [&](std::uint32_t pass, float brightness) {
             pass_pixels p{{}, std::vector<glm::vec4>(35, glm::vec4(1)), std::vector<glm::vec4>(35)};
             for (int i = 0; i < 35; ++i)
-                p.pixels.emplace_back(brightness * static_cast<float>(i));
+                p.pixels.emplace_back(brightness * static_cast<float>(35 + i)); // below 4 of any neighbour's
             passes.add(pass, std::move(p));
         };
         add(0, 1);
@@ -114,9 +114,9 @@ namespace {
                 "B", "G", "R", "estimate.count", "estimate.radius", "estimate.relative_error", "noise"}));
         const auto noise = channel(path("two.exr"), "noise");
         EXPECT_EQ(noise, two.layers.noise);
-        for (std::size_t i = 0; i < noise.size(); ++i) // i and 3 i: a mean of 2 i with a standard error of i
-            EXPECT_FLOAT_EQ(noise[i], static_cast<float>(i));
-        EXPECT_EQ(channel(path("two.exr"), "G")[34], 68.0f);
+        for (std::size_t i = 0; i < noise.size(); ++i) // b and 3 b: a mean of 2 b with a standard error of b
+            EXPECT_FLOAT_EQ(noise[i], static_cast<float>(35 + i));
+        EXPECT_EQ(channel(path("two.exr"), "G")[34], 138.0f);
     }
 
     TEST_F(image_file, layers_are_written_where_there_are_any)
