@@ -144,8 +144,8 @@ if [[ $gpu == yes ]]; then
   exit $failed
 fi
 if [[ $smoke == yes ]]; then
-  for section in algorithms clusters defaults edges error estimates gather inclusion lamps panes pictures water \
-    window; do
+  for section in algorithms clusters defaults edges error estimates gather inclusion lamps panes pictures strips \
+    water window; do
     must $sections $section --quick
   done
   must $sections convergence --quick cpu
@@ -211,6 +211,7 @@ fi
 if asked estimates; then
   measure "Error and cost of each kind of estimate" $sections estimates
   measure "Edge correction" $sections edges
+  measure "Brightness along edges" $sections strips
   measure "One lamp and a hundred" $sections lamps
   measure "Surfaces under a pane of glass" $sections panes
   measure "A glass of water with ice" $sections water

@@ -32,6 +32,9 @@
                            many photons sent at what makes the caustic as we store, two threads, no antialiasing
   ring                     the ring's caustic by POV-Ray's photons and by ours: how far the brightest parts overlap
   stages BACKEND...        whole pictures by stage
+  strips                   brightness along edges of floors, walls, boxes, meshes and a disk: rows of pixels by the
+                           settings of imported scenes over the reference's. FAIL: the worst row is off by over 1 % and
+                           twice the noise
   table1 [BACKEND...]      the paper's Table 1. Default: serial vulkan gl
   water [BACKEND...]       a glass of water with ice as nested bodies, against pbrt-v3's paths through its interfaces:
                            relMSE of 16 x 16 blocks. FAIL: over twice what the noise of both explains. PHOTONGRID_PEERS
@@ -703,6 +706,67 @@ def stages(backends, quick):
                 row(scene, backend, run, *(f"{stats['stages'][name]['ms']:.2f}" for name in names))
 
 
+def strips(_, quick):
+    width, height, samples = (16, 16, 16) if quick else (64, 32, 4096)
+    imported = ("--filter", "silverman", "--leaks", "side,min_cosine", "--edge-correction", "probes", "--radii",
+                "shrinking")
+
+    def box(half, low, high):
+        return {"type": "box", "corner": [-half, low, -half], "edge_u": [2 * half, 0, 0], "edge_v": [0, 0, 2 * half],
+                "edge_w": [0, high - low, 0]}
+
+    def mesh(half, low, high):
+        ring = [[-half, -half], [half, -half], [half, half], [-half, half]]
+        sides = [[i, j, j + 4, i + 4] for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))]
+        return {"type": "mesh", "positions": [[x, y, z] for y in (low, high) for x, z in ring],
+                "triangles": [t for a, b, c, d in [[3, 2, 1, 0], [4, 5, 6, 7], *sides] for t in ([a, c, b], [a, d, c])]}
+
+    def polygons(half, low, high):
+        whole = mesh(half, low, high)
+        return [{"type": "polygon", "vertices": [whole["positions"][i] for i in (a[0], a[2], a[1], b[1])]}
+                for a, b in zip(whole["triangles"][::2], whole["triangles"][1::2])]
+
+    top = {"type": "disk", "center": [0, 0.4, -0.6], "normal": [0, 1, 0], "radius": 0.3}
+    wall = {"position": [0, 0.5, 0.2], "look_at": [0, 0.02, -1], "vertical_fov": 20}
+    foot = {"position": [0, 0.4, 0.9], "look_at": [0, 0.03, 0.3], "vertical_fov": 20}
+    edge = {"position": [0, 1, 0.6], "look_at": [0, 0.4, 0.3], "vertical_fov": 14}
+    heading(["edge", "worst row over the reference's", "its noise", ""])
+    for name, shapes, camera in (
+            ("wall and floor, polygons", polygons(1, 0, 2), wall), ("wall and floor, mesh", [mesh(1, 0, 2)], wall),
+            ("wall and floor, box", [box(1, 0, 2)], wall),
+            ("foot of a box", [box(1, 0, 2), box(0.3, 0, 0.4)], foot),
+            ("foot of a mesh", [mesh(1, 0, 2), mesh(0.3, 0, 0.4)], foot),
+            ("foot of a mesh 1 mm above", [mesh(1, 0, 2), mesh(0.3, 0.001, 0.4)], foot),
+            ("upper edge of a box", [box(1, 0, 2), box(0.3, 0, 0.4)], edge),
+            ("upper edge of a mesh", [mesh(1, 0, 2), mesh(0.3, 0, 0.4)], edge),
+            ("rim of a disk", [mesh(1, 0, 2), top], {"position": [0, 1, -0.3], "look_at": [0, 0.4, -0.3],
+                                                     "up": [0, 0, -1], "vertical_fov": 10})):
+        with open(f"{WORK}/edge.json", "w", encoding="utf-8") as f:
+            json.dump({"photongrid": 1, "name": name, "units": {"length": "m", "power": "W"}, "camera": camera,
+                       "materials": {"grey": {"type": "lambertian", "reflectance": 0.7}},
+                       "shapes": [{**s, "material": "grey"} for s in shapes],
+                       "lights": [{"type": "rectangle", "corner": [-0.2, 1.98, 0.3], "edge_u": [0.4, 0, 0],
+                                   "edge_v": [0, 0, 0.4], "power": 20}],
+                       "render": {"size": [width, height], "photons": 200000, "k": 500, "max_radius": 0.3}}, f)
+
+        def rows(*command):
+            said(PROGRAM, *command, f"{WORK}/edge.json", "--quiet", "-o", f"{WORK}/edge.pfm")
+            values = read_picture(f"{WORK}/edge.pfm")[1]
+            return [statistics.mean(values[3 * width * y:3 * width * (y + 1)]) for y in range(height)]
+
+        def of_seeds(count, *command):
+            """Per row, the mean over seeds and its standard error."""
+            by_seed = zip(*(rows(*command, "--seed", seed) for seed in range(1, count + 1)))
+            return [(statistics.mean(r), statistics.stdev(r) / math.sqrt(count)) for r in by_seed]
+
+        right = of_seeds(2, "reference", "--spp", samples)
+        ours = of_seeds(2 if quick else 8, "render", "--backend", "cpu", "--passes", 2 if quick else 16, *imported)
+        shares = [o[0] / r[0] for o, r in zip(ours, right)]
+        noise = math.sqrt(statistics.mean((o[1] ** 2 + r[1] ** 2) / r[0] ** 2 for o, r in zip(ours, right)))
+        worst = max(shares, key=lambda share: abs(share - 1))
+        row(name, f"{worst:.3f}", f"{noise:.3f}", verdict(quick or abs(worst - 1) <= 0.01 + 2 * noise))
+
+
 def table1(backends, quick):
     print("Seconds; stages without compiling kernels, totals with it.\n")
     heading(["scene", "map", "backend", "trace photons", "build map", "trace rays", "radiance estimate", "total",
@@ -765,7 +829,8 @@ def window(backends, quick):
 
 
 SECTIONS = {f.__name__: f for f in (algorithms, clusters, convergence, defaults, edges, error, estimates, figure7,
-                                    gather, inclusion, lamps, panes, pictures, ring, stages, table1, water, window)}
+                                    gather, inclusion, lamps, panes, pictures, ring, stages, strips, table1, water,
+                                    window)}
 
 if __name__ == "__main__":
     if len(sys.argv) < 2 or sys.argv[1] not in SECTIONS:
