@@ -15,7 +15,7 @@
 #   --estimates   error and cost of searches, filters, leak policies and edge correction, on whole pictures
 #   --error       time against relMSE of every kind of estimate: CSV and plots in out/error/
 #   --convergence time to error against other programs, those that the folder $PHOTONGRID_PEERS has: CSV and plots in
-#                 out/time_to_error/
+#                 out/time_to_error/; scenes' settings against a random search
 #   --inclusion   what including the headers costs a user's compiler, and the size of the smallest programs
 #   --files       how fast scene files are read, and with how much memory
 #   --write       puts what is printed into bench/results/ and docs/reference/measures.md too (bench/results.py), and the
@@ -163,6 +163,7 @@ if [[ $smoke == yes ]]; then
   must $native search --sets 1 --seconds 0.05
   must $native sort --most 65536
   must python3 bench/time_to_error.py --quick
+  must python3 bench/best_settings.py --size 16 --seconds 0.2 --tries 2 --repeats 1 --spp 4 $box
   exit $failed
 fi
 if asked inclusion; then
@@ -222,5 +223,6 @@ if asked error; then
 fi
 if asked convergence; then
   measure "Time to error against other programs" python3 bench/time_to_error.py
+  measure "A scene's settings against a random search" python3 bench/best_settings.py
 fi
 exit $failed

@@ -1,4 +1,5 @@
 // Sums of passes and schedules of previews: the parts of a picture, without a device.
+#include "chosen_settings_tests.hpp"
 #include "exact_sum_tests.hpp"
 #include "film_tests.hpp"
 #include "picture_error_tests.hpp"

@@ -14,6 +14,10 @@
 
 namespace photongrid {
 
+/// A number, or a length, that a pilot chooses for the scene (render/pilot.hpp).
+inline constexpr std::uint32_t automatic_number = 0xFFFFFFFFu;
+inline constexpr double automatic_length = -1;
+
 /// How a photon map is built: sorted_map (2.2.1), routed_map (2.2.2), block_map, or whichever of a sorted map in a
 /// fitted grid and a block map suits the photons (fitted_map).
 enum class map_builder { sort, route, blocks, automatic };
@@ -144,7 +148,10 @@ struct output_settings {
     /// Whether something else than the number of passes may end the picture.
     bool has_stop_rule() const { return until_error > 0 || seconds > 0; }
     /// The number of passes after which the picture ends at the latest.
-    std::uint32_t passes_at_most() const { return has_stop_rule() && passes == 1 ? most_passes : passes; }
+    std::uint32_t passes_at_most() const
+    {
+        return passes == automatic_number || (has_stop_rule() && passes == 1) ? most_passes : passes;
+    }
     /// The same settings, with no rule that ends the picture before its passes.
     output_settings without_stop_rule() const
     {
@@ -177,6 +184,28 @@ struct render_settings {
 
     bool operator==(const render_settings&) const = default;
 };
+
+/// Whether a pilot has to choose some of the settings.
+inline bool is_automatic(const render_settings& s)
+{
+    for (const auto number : {s.map.photons, s.map.caustic_photons, s.estimate.k, s.estimate.caustic_k, s.view.spp,
+             s.view.light_samples, s.output.passes})
+        if (number == automatic_number)
+            return true;
+    return s.estimate.max_radius == automatic_length;
+}
+/// Settings that a pilot chooses, all that can be chosen.
+inline render_settings automatic_settings()
+{
+    render_settings s;
+    for (auto* number : {&s.map.photons, &s.map.caustic_photons, &s.estimate.k, &s.estimate.caustic_k, &s.view.spp,
+             &s.view.light_samples, &s.output.passes})
+        *number = automatic_number;
+    s.estimate.max_radius = automatic_length;
+    s.map.grid = glm::uvec3(0);
+    s.map.builder = map_builder::automatic;
+    return s;
+}
 
 /// Whether a picture with settings `s` has light from a final gather.
 inline bool gathers(const render_settings& s)
@@ -239,6 +268,15 @@ inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.ne
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
+    const render_settings numbers; // in place of automatic ones; only max_radius depends on the scene
+    const auto give = [](std::uint32_t& number, std::uint32_t otherwise) {
+        number = number == automatic_number ? otherwise : number;
+    };
+    give(s.map.photons, numbers.map.photons);
+    give(s.estimate.k, numbers.estimate.k);
+    give(s.estimate.caustic_k, numbers.estimate.caustic_k);
+    give(s.view.spp, numbers.view.spp);
+    give(s.view.light_samples, numbers.view.light_samples);
     s.estimate.search = search_kind::at_least_k;
     s.estimate.filter = filter_kind::constant;
     s.estimate.bias = bias_kind::paper;
@@ -270,7 +308,7 @@ inline render_settings as_exact(render_settings s)
     s.estimate.caustic_k = std::min(s.estimate.caustic_k, 50u);
     if (s.map.builder == map_builder::route)
         s.map.builder = map_builder::automatic;
-    if (s.output.passes == 1 && !s.output.has_stop_rule())
+    if (s.output.passes == automatic_number || (s.output.passes == 1 && !s.output.has_stop_rule()))
         s.output.passes = output_settings::most_passes;
     return s;
 }

@@ -1,0 +1,101 @@
+// Settings that nobody gave, from measures of a pilot.
+#pragma once
+
+#include <photongrid/render/chosen_settings.hpp>
+#include <photongrid/scene/setting_table.hpp>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace photongrid;
+
+/// Of a room with soft light and a caustic, in a picture of 256 x 256 pixels.
+pilot_measures measures_of_a_room()
+{
+    pilot_measures m;
+    m.spread = 0.02;
+    m.light_spread = 0.05;
+    m.maps[0] = {.spread = 0.002, .noise = 0.1, .blur2 = 0.01, .growth = 0.5, .segments = 5};
+    m.maps[1] = {.spread = 0.01, .noise = 1, .blur2 = 0.001, .growth = 0.4, .segments = 3};
+    m.pixels = 65536;
+    m.of_ray = 1;
+    m.lamps = 1;
+    return m;
+}
+
+TEST(chosen_settings, are_numbers_in_their_ranges)
+{
+    const auto s = chosen_settings(measures_of_a_room(), automatic_settings(), 0.2);
+    EXPECT_FALSE(is_automatic(s));
+    EXPECT_NO_THROW(check(s));
+    EXPECT_EQ(s.estimate.max_radius, 0.2);
+    EXPECT_GE(s.output.passes, 8u);
+    EXPECT_TRUE(is_automatic(automatic_settings()));
+}
+
+TEST(chosen_settings, leave_what_is_given)
+{
+    const auto given = [](auto&& give) {
+        auto s = automatic_settings();
+        give(s);
+        return chosen_settings(measures_of_a_room(), s, 0.2);
+    };
+    EXPECT_EQ(given([](auto& s) { s.map.photons = 777; }).map.photons, 777u);
+    EXPECT_EQ(given([](auto& s) { s.map.caustic_photons = 0; }).map.caustic_photons, 0u);
+    EXPECT_EQ(given([](auto& s) { s.estimate.k = 77; }).estimate.k, 77u);
+    EXPECT_EQ(given([](auto& s) { s.estimate.caustic_k = 7; }).estimate.caustic_k, 7u);
+    EXPECT_EQ(given([](auto& s) { s.estimate.max_radius = 3; }).estimate.max_radius, 3);
+    EXPECT_EQ(given([](auto& s) { s.view.spp = 3; }).view.spp, 3u);
+    EXPECT_EQ(given([](auto& s) { s.view.light_samples = 5; }).view.light_samples, 5u);
+    EXPECT_EQ(given([](auto& s) { s.output.passes = 2; }).output.passes, 2u);
+    // Whatever ends it, it is the same picture; a rule finds no limit.
+    auto timed = given([](auto& s) { s.output.seconds = 1; });
+    EXPECT_EQ(timed.output.passes_at_most(), output_settings::most_passes);
+    timed.output = given([](auto& s) { s.output.passes = 2; }).output;
+    EXPECT_EQ(timed, given([](auto& s) { s.output.passes = 2; }));
+}
+
+TEST(chosen_settings, follow_the_light)
+{
+    const auto chosen = [](auto&& change) {
+        auto m = measures_of_a_room();
+        change(m);
+        return chosen_settings(m, automatic_settings(), 0.2);
+    };
+    const auto share = [](const render_settings& s) { return 1.0 * s.estimate.k / s.map.photons; };
+    const auto plain = chosen([](auto&) {});
+    EXPECT_GT(chosen([](auto& m) { m.maps[1].noise *= 30; }).map.photons, plain.map.photons) << "noise of photons";
+    EXPECT_LT(share(chosen([](auto& m) { m.maps[1].blur2 *= 100; })), share(plain)) << "light with edges";
+    EXPECT_LT(chosen([](auto& m) { m.maps[1].segments *= 30; }).map.photons, plain.map.photons) << "dear photons";
+    EXPECT_GT(chosen([](auto& m) { m.light_spread *= 30; }).view.light_samples, plain.view.light_samples);
+    const auto without = chosen([](auto& m) { m.maps[0] = {}; });
+    EXPECT_EQ(without.map.caustic_photons, 0u) << "no caustics";
+    EXPECT_GT(plain.map.caustic_photons, 0u);
+    // Where eye rays alone take longer, there is time for photons too.
+    EXPECT_GT(chosen([](auto& m) { m.branches = 8, m.of_ray = 5; }).map.photons, 10'000u);
+}
+
+/// Of all plans the best is taken: what is said of its error and cost is worse with any other number of photons.
+TEST(chosen_settings, have_the_least_error_in_their_time)
+{
+    const auto m = measures_of_a_room();
+    const auto best = chosen_settings(m, automatic_settings(), 0.2);
+    const auto error = [&](double photons, double caustic) {
+        detail::pass_plan plan{{caustic, photons}, {}, static_cast<double>(best.view.light_samples)};
+        double passes = 0;
+        for (int i = 0; i < 20; ++i) { // shares depend on the passes, and not these on them
+            passes = 80 * m.pixels / plan.cost(m);
+            for (std::size_t k = 0; k < 2; ++k)
+                plan.shares[k] = detail::best_map(m.maps[k], plan.photons[k], passes).share;
+        }
+        return plan.error(m, passes);
+    };
+    const double photons = best.map.photons, caustic = best.map.caustic_photons, least = error(photons, caustic);
+    for (const double times : {0.25, 4.0}) {
+        EXPECT_GT(error(photons * times, caustic), least) << times;
+        EXPECT_GT(error(photons, caustic * times), least) << times;
+    }
+}
+
+} // namespace
