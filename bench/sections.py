@@ -32,9 +32,8 @@
                            many photons sent at what makes the caustic as we store, two threads, no antialiasing
   ring                     the ring's caustic by POV-Ray's photons and by ours: how far the brightest parts overlap
   stages BACKEND...        whole pictures by stage
-  strips                   brightness along edges of floors, walls, boxes, meshes and a disk: rows of pixels by the
-                           settings of imported scenes over the reference's. FAIL: the worst row is off by over 1 % and
-                           twice the noise
+  strips                   brightness along edges of floors, walls, boxes, meshes and a disk: rows of pixels over the
+                           reference's. FAIL: the worst row is off by over 1 % and twice the noise
   table1 [BACKEND...]      the paper's Table 1. Default: serial vulkan gl
   water [BACKEND...]       a glass of water with ice as nested bodies, against pbrt-v3's paths through its interfaces:
                            relMSE of 16 x 16 blocks. FAIL: over twice what the noise of both explains. PHOTONGRID_PEERS
@@ -62,7 +61,7 @@ import time
 import traceback
 
 from error_curves import block_means, pixel_errors, read_picture
-from made_scenes import write_scene
+from made_scenes import box as box_mesh, write_scene
 from peer_scenes import pbrt_film
 
 os.chdir(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -708,23 +707,22 @@ def stages(backends, quick):
 
 def strips(_, quick):
     width, height, samples = (16, 16, 16) if quick else (64, 32, 4096)
-    imported = ("--filter", "silverman", "--leaks", "side,min_cosine", "--edge-correction", "probes", "--radii",
-                "shrinking")
 
     def box(half, low, high):
         return {"type": "box", "corner": [-half, low, -half], "edge_u": [2 * half, 0, 0], "edge_v": [0, 0, 2 * half],
                 "edge_w": [0, high - low, 0]}
 
+    def faces(half, low, high):
+        return box_mesh([-half, low, -half], [half, high, half])
+
     def mesh(half, low, high):
-        ring = [[-half, -half], [half, -half], [half, half], [-half, half]]
-        sides = [[i, j, j + 4, i + 4] for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))]
-        return {"type": "mesh", "positions": [[x, y, z] for y in (low, high) for x, z in ring],
-                "triangles": [t for a, b, c, d in [[3, 2, 1, 0], [4, 5, 6, 7], *sides] for t in ([a, c, b], [a, d, c])]}
+        whole = faces(half, low, high)
+        return {"type": "mesh", "positions": whole.positions, "triangles": whole.triangles}
 
     def polygons(half, low, high):
-        whole = mesh(half, low, high)
-        return [{"type": "polygon", "vertices": [whole["positions"][i] for i in (a[0], a[2], a[1], b[1])]}
-                for a, b in zip(whole["triangles"][::2], whole["triangles"][1::2])]
+        whole = faces(half, low, high)  # two triangles a face: abc, acd
+        return [{"type": "polygon", "vertices": [whole.positions[i] for i in (*one, other[2])]}
+                for one, other in zip(whole.triangles[::2], whole.triangles[1::2])]
 
     top = {"type": "disk", "center": [0, 0.4, -0.6], "normal": [0, 1, 0], "radius": 0.3}
     wall = {"position": [0, 0.5, 0.2], "look_at": [0, 0.02, -1], "vertical_fov": 20}
@@ -760,7 +758,7 @@ def strips(_, quick):
             return [(statistics.mean(r), statistics.stdev(r) / math.sqrt(count)) for r in by_seed]
 
         right = of_seeds(2, "reference", "--spp", samples)
-        ours = of_seeds(2 if quick else 8, "render", "--backend", "cpu", "--passes", 2 if quick else 16, *imported)
+        ours = of_seeds(2 if quick else 8, "render", "--backend", "cpu", "--passes", 2 if quick else 16)
         shares = [o[0] / r[0] for o, r in zip(ours, right)]
         noise = math.sqrt(statistics.mean((o[1] ** 2 + r[1] ** 2) / r[0] ** 2 for o, r in zip(ours, right)))
         worst = max(shares, key=lambda share: abs(share - 1))

@@ -83,12 +83,9 @@ TEST(chosen_settings, have_the_least_error_in_their_time)
     const auto best = chosen_settings(m, automatic_settings(), 0.2);
     const auto error = [&](double photons, double caustic) {
         detail::pass_plan plan{{caustic, photons}, {}, static_cast<double>(best.view.light_samples)};
-        double passes = 0;
-        for (int i = 0; i < 20; ++i) { // shares depend on the passes, and not these on them
-            passes = 80 * m.pixels / plan.cost(m);
-            for (std::size_t k = 0; k < 2; ++k)
-                plan.shares[k] = detail::best_map(m.maps[k], plan.photons[k], passes).share;
-        }
+        const double passes = 80 * m.pixels / plan.cost(m);
+        for (std::size_t k = 0; k < 2; ++k)
+            plan.shares[k] = detail::best_map(m.maps[k], plan.photons[k], passes).share;
         return plan.error(m, passes);
     };
     const double photons = best.map.photons, caustic = best.map.caustic_photons, least = error(photons, caustic);

@@ -148,10 +148,7 @@ struct output_settings {
     /// Whether something else than the number of passes may end the picture.
     bool has_stop_rule() const { return until_error > 0 || seconds > 0; }
     /// The number of passes after which the picture ends at the latest.
-    std::uint32_t passes_at_most() const
-    {
-        return passes == automatic_number || (has_stop_rule() && passes == 1) ? most_passes : passes;
-    }
+    std::uint32_t passes_at_most() const { return has_stop_rule() && passes == 1 ? most_passes : passes; }
     /// The same settings, with no rule that ends the picture before its passes.
     output_settings without_stop_rule() const
     {
@@ -268,15 +265,6 @@ inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.ne
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
-    const render_settings numbers; // in place of automatic ones; only max_radius depends on the scene
-    const auto give = [](std::uint32_t& number, std::uint32_t otherwise) {
-        number = number == automatic_number ? otherwise : number;
-    };
-    give(s.map.photons, numbers.map.photons);
-    give(s.estimate.k, numbers.estimate.k);
-    give(s.estimate.caustic_k, numbers.estimate.caustic_k);
-    give(s.view.spp, numbers.view.spp);
-    give(s.view.light_samples, numbers.view.light_samples);
     s.estimate.search = search_kind::at_least_k;
     s.estimate.filter = filter_kind::constant;
     s.estimate.bias = bias_kind::paper;
@@ -308,7 +296,7 @@ inline render_settings as_exact(render_settings s)
     s.estimate.caustic_k = std::min(s.estimate.caustic_k, 50u);
     if (s.map.builder == map_builder::route)
         s.map.builder = map_builder::automatic;
-    if (s.output.passes == automatic_number || (s.output.passes == 1 && !s.output.has_stop_rule()))
+    if (s.output.passes == 1 && !s.output.has_stop_rule())
         s.output.passes = output_settings::most_passes;
     return s;
 }
