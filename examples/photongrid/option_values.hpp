@@ -56,7 +56,8 @@ void add_number(CLI::App& to, const std::string& option, std::optional<double>& 
 
 // A setting's value, and the type that --help shows for it.
 std::uint32_t parsed_setting(const std::string& option, const std::string& text, const setting_table::whole_range&);
-double parsed_setting(const std::string& option, const std::string& text, const setting_table::any_length&);
+std::uint32_t parsed_setting(const std::string& option, const std::string& text, const setting_table::whole_or_auto&);
+double parsed_setting(const std::string& option, const std::string& text, const setting_table::length_or_auto&);
 double parsed_setting(const std::string& option, const std::string& text, const real_range&);
 std::optional<double> parsed_setting(
     const std::string& option, const std::string& text, const setting_table::real_or_auto&);
@@ -66,7 +67,8 @@ glm::uvec3 parsed_setting(const std::string& option, const std::string& text, co
 leak_policy parsed_setting(const std::string& option, const std::string& text, const setting_table::policies&);
 inline std::string type_of(const setting_table::whole_range&) { return "N"; }
 inline std::string type_of(const setting_table::real_or_auto& r) { return std::string(r.range.unit + 1) + "|auto"; }
-inline std::string type_of(const setting_table::any_length&) { return "METRES"; }
+inline std::string type_of(const setting_table::whole_or_auto&) { return "N|auto"; }
+inline std::string type_of(const setting_table::length_or_auto&) { return "METRES|auto"; }
 inline std::string type_of(const real_range& r) { return r.unit[0] == ' ' ? r.unit + 1 : "NUMBER"; }
 inline std::string type_of(const setting_table::pixels&) { return "WxH"; }
 inline std::string type_of(const setting_table::cells&) { return "X,Y,Z|auto"; }

@@ -7,7 +7,11 @@
 #include "scene_notes.hpp"
 #include "stats_file.hpp"
 #include <photongrid/backends/any/module.hpp>
+#include <photongrid/io/scene_writer.hpp>
+#include <photongrid/io/setting_texts.hpp>
 #include <photongrid/io/tone_map.hpp>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -153,6 +157,16 @@ namespace {
             .every_ms = o.every};
     }
 
+    /// Returns false if a stop is asked for before settings are chosen.
+    bool choose_settings(renderer& drawing, progress_bar& bar, const std::function<bool()>& stop_asked)
+    {
+        while (is_automatic(drawing.settings()) && !stop_asked()) {
+            bar.show(drawing.progress(), drawing.stats().end.error);
+            drawing.step(renderer::milliseconds(0));
+        }
+        bar.clear();
+        return !is_automatic(drawing.settings());
+    }
     /// Draws until the picture is complete or a stop is asked for.
     void draw_until_done(renderer& drawing, picture_series& series, resumable& file, progress_bar& bar,
         const std::function<bool()>& stop_asked)
@@ -167,6 +181,19 @@ namespace {
             file.keep_sometimes();
         }
         bar.clear();
+    }
+
+    /// The settings that were chosen, as options.
+    std::string as_options(const render_settings& was, const render_settings& is)
+    {
+        std::string all;
+        const auto values = nlohmann::json::parse(settings_text(is));
+        for_each_setting([&](const auto& row) {
+            if constexpr (requires { row.values.automatic; })
+                if (row.of(was) == row.values.automatic)
+                    all += " " + option_of_setting(row.name) + " " + values[row.name].dump();
+        });
+        return all;
     }
 
     /// "12 passes, error 0.019 in 95 % of the pixels; --until-error is reached"
@@ -207,13 +234,19 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
         std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
         return usage_error;
     }
-    const auto& settings = plan.settings;
 
     const auto start = std::chrono::steady_clock::now();
     progress_bar bar(o.quiet);
     const auto drawing = make_renderer(plan.backend);
-    drawing->start(
-        s, settings, {.enabled = series->enabled() || settings.output.seconds > 0, .running_estimates = true});
+    drawing->start(s, plan.settings,
+        {.enabled = series->enabled() || plan.settings.output.seconds > 0, .running_estimates = true});
+    if (!choose_settings(*drawing, bar, stop_asked)) {
+        std::cerr << "photongrid: interrupted; there is no picture yet\n";
+        return interrupted;
+    }
+    const auto settings = drawing->settings();
+    if (is_automatic(plan.settings) && !o.quiet)
+        std::cerr << "photongrid: chosen:" << as_options(plan.settings, settings) << '\n';
     resumable file(*drawing, o.resume, s, settings);
     draw_until_done(*drawing, *series, file, bar, stop_asked);
     const bool finished = drawing->finished();

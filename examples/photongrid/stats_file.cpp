@@ -31,6 +31,20 @@ namespace {
         }
         return "nothing";
     }
+
+    /// What a pilot measured of the picture, as parts of the square of a pixel's radiance (chosen_settings.hpp).
+    json pilot_json(const std::optional<pilot_measures>& pilot)
+    {
+        if (!pilot)
+            return nullptr;
+        const auto map = [](const pilot_photons& of) {
+            return json{{"spread", of.spread}, {"noise", of.noise}, {"blur2", of.blur2}, {"growth", of.growth},
+                {"segments", of.segments}};
+        };
+        return {{"spread", pilot->spread}, {"light_spread", pilot->light_spread}, {"caustic", map(pilot->maps[0])},
+            {"other", map(pilot->maps[1])}, {"of_ray", pilot->of_ray}, {"branches", pilot->branches},
+            {"lamps", pilot->lamps}};
+    }
 } // namespace
 
 std::string stats_json(
@@ -50,7 +64,7 @@ std::string stats_json(
     }
     const json all = {{"version", PHOTONGRID_VERSION}, {"scene", s.scene.name}, {"notes", notes},
         {"backend", result.caps().backend}, {"device", result.caps().device}, {"seed", settings.seed},
-        {"settings", json::parse(settings_text(settings))},
+        {"settings", json::parse(settings_text(settings))}, {"pilot", pilot_json(r.pilot)},
         {"picture",
             {{"passes", r.end.passes}, {"error", number_or_null(r.end.error)},
                 {"percentile", settings.output.percentile}, {"ended_by", word_for(r.end.by)}}},

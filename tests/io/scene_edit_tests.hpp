@@ -54,6 +54,33 @@ namespace {
             }
     }
 
+    TEST(scene_edit, keeps_automatic_what_is_automatic)
+    {
+        const auto with_render = [](const std::string& render) {
+            auto lines = good;
+            lines[12] = render;
+            if (render == "}")
+                lines[11].pop_back(); // the comma
+            return text(lines);
+        };
+        for (const auto* before : {"}", R"( "render": {}})", R"( "render": {"comment": "quick"}})",
+                 R"( "render": {"k": 7, "spp": "auto"}})", R"( "render": {"photons": 1000, "grid": [4, 1, 4]}})",
+                 R"( "render": {"photons": "auto", "passes": 3}})"}) {
+            const auto text = with_render(before);
+            const auto s = parse_scene("s.json", text);
+            EXPECT_EQ(edited_scene_text("s.json", text, s, s.render), text);
+            for (const auto photons : {automatic_number, 77u})
+                for (const auto& [k, radius] : {std::pair(automatic_number, 3.0), std::pair(20u, automatic_length)}) {
+                    auto changed = s.render;
+                    changed.map.photons = photons;
+                    changed.estimate.k = k;
+                    changed.estimate.max_radius = radius;
+                    EXPECT_EQ(parse_scene("s.json", edited_scene_text("s.json", text, s, changed)).render, changed)
+                        << before << ", " << photons << ", " << k;
+                }
+        }
+    }
+
     TEST(scene_edit, replaces_numbers_in_the_units_of_the_file)
     {
         auto s = parse_scene("s.json", by_hand);

@@ -93,6 +93,39 @@ namespace {
         EXPECT_EQ(s.point_lights[0].power, dvec3(10'000, 20'000, 30'000));
     }
 
+    TEST(scene_file, leaves_settings_without_a_number_to_the_renderer)
+    {
+        const auto with = [](const std::string& render) {
+            auto lines = good;
+            lines[12] = render;
+            if (render == "}")
+                lines[11].pop_back(); // the comma
+            return parse_scene("s.json", text(lines)).render;
+        };
+        for (const auto* none : {"}", R"( "render": {}})", R"( "render": {"photons": "auto", "max_radius": "auto"}})"})
+            EXPECT_EQ(with(none), automatic_settings()) << none;
+        auto expected = automatic_settings();
+        expected.estimate.k = 30;
+        expected.output.passes = 4;
+        EXPECT_EQ(with(R"( "render": {"k": 30, "passes": 4}})"), expected);
+        // Where photons are named, what is not has its old default.
+        const auto old = with(R"( "render": {"photons": 1000, "k": 20, "max_radius": 0.25, "size": [9, 7]}})");
+        EXPECT_FALSE(is_automatic(old));
+        EXPECT_EQ(old.view, view_settings{});
+        EXPECT_EQ(old.output.passes, 1u);
+        EXPECT_EQ(old.map.caustic_photons, 0u);
+        const auto partly = with(R"( "render": {"photons": 1000, "spp": "auto"}})");
+        EXPECT_EQ(partly.view.spp, automatic_number);
+        EXPECT_EQ(partly.estimate.k, automatic_number);
+        EXPECT_EQ(partly.estimate.max_radius, automatic_length);
+        EXPECT_EQ(partly.view.light_samples, 8u);
+        auto lines = good;
+        lines[12] = R"( "render": {"k": "auto", "photons": "many"}})";
+        EXPECT_NE(
+            refusal(text(lines)).find("expected a whole number from 1 to 134217728, or \"auto\""), std::string::npos)
+            << refusal(text(lines));
+    }
+
     TEST(scene_file, reads_what_kind_of_estimate_is_wanted)
     {
         const auto with = [](const std::string& more) {

@@ -54,10 +54,11 @@ namespace {
                  {"--size", "32x-4"}, {"--size", "0x4"}, {"--grid", "1,2"}, {"--grid", "1,2,3,4"}, {"--grid", "0,1,1"},
                  {"--photons", "15e-1"}, {"--photons", "1e10"}, {"--photons", "-1"}, {"--photons", "1e"},
                  {"--photons", "nan"}, {"--photons", "99999999999"}, {"--k", "0"}, {"--max-radius", "nan"},
-                 {"--max-radius", "-1"}, {"--exposure", "inf"}, {"--slots", "17"}, {"--surplus", "all"},
-                 {"--map", "hash"}, {"--device", "0"}, {"--time-passes"}, {"--spp", "0"}, {"--nonsense"},
-                 {"--search", "exact"}, {"--filter", "gauss"}, {"--bias", "none"}, {"--edge-correction", "disks"},
-                 {"--edge-correction"}, {"--only", "caustics"}, {"--as-paper", "--as-paper=maybe"}}) {
+                 {"--max-radius", "-1"}, {"--spp", "4294967295"}, {"--passes", "automatic"}, {"--exposure", "inf"},
+                 {"--slots", "17"}, {"--surplus", "all"}, {"--map", "hash"}, {"--device", "0"}, {"--time-passes"},
+                 {"--spp", "0"}, {"--nonsense"}, {"--search", "exact"}, {"--filter", "gauss"}, {"--bias", "none"},
+                 {"--edge-correction", "disks"}, {"--edge-correction"}, {"--only", "caustics"},
+                 {"--as-paper", "--as-paper=maybe"}}) {
             const auto e = run([&] {
                 auto all = small;
                 // An option given twice is an error of its own.
@@ -86,6 +87,32 @@ namespace {
         EXPECT_EQ(e.err, "bad.json:2:2: error: unknown key \"lihgts\" in \"scene\"; expected \"lights\"?\n");
         EXPECT_EQ(run({"render", "bad.json"}).code, 3);
         EXPECT_EQ(run({"check", "none.json"}).code, 3);
+    }
+
+    /// What is chosen is printed as options, which draw the same picture.
+    TEST_F(program, draws_scenes_without_settings_on_every_device)
+    {
+        auto scene = nlohmann::json::parse(std::ifstream(ring));
+        scene.erase("render");
+        scene.erase("as_paper");
+        std::ofstream(folder / "s.json") << scene;
+        for (const std::string backend : {"serial", "cpu", "gl", "vulkan"}) {
+            std::vector<std::string> command{
+                "render", "s.json", "--backend", backend, "--size", "32x24", "--passes", "2", "-o", backend + ".pfm"};
+            const auto e = run(command);
+            ASSERT_EQ(e.code, 0) << e.err;
+            const std::string mark = "photongrid: chosen: ";
+            const auto at = e.err.find(mark);
+            ASSERT_NE(at, std::string::npos) << e.err;
+            std::istringstream options(e.err.substr(at + mark.size(), e.err.find('\n', at) - at - mark.size()));
+            command.back() = "again.pfm";
+            for (std::string word; options >> word;)
+                command.push_back(word);
+            ASSERT_EQ(run(command).code, 0) << backend;
+            EXPECT_EQ(contents(folder / (backend + ".pfm")), contents(folder / "again.pfm")) << e.err;
+            const auto same = run({"compare", backend + ".pfm", "serial.pfm", "--max-relmse", "0.05"});
+            EXPECT_EQ(same.code, 0) << backend << ": " << same.out << e.err;
+        }
     }
 
     /// Variants of the ring's scene that would give a black or a white picture without a word: they are drawn, and

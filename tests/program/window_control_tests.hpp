@@ -67,10 +67,15 @@ TEST_F(window, controls_change_the_setting_they_name)
     EXPECT_TRUE(is_drawn(before));
     use("fitted grid", 0.05);
     use("fitted exposure", 0.05);
+    before = requests();
+    use("automatic photons", 0.05);
+    EXPECT_TRUE(is_drawn(before));
     use("save scene");
     const auto again = saved_scene(folder, "ball-changed-2.json")["render"];
     EXPECT_EQ(again.value("surplus", ""), "power");
     EXPECT_EQ(again.value("grid", json()), "auto");
+    EXPECT_EQ(again.value("photons", json()), "auto");
+    EXPECT_EQ(again.value("spp", json()), changed.value("spp", json()));
     EXPECT_FALSE(again.contains("exposure") && again["exposure"].is_number());
     use("save picture");
     EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "ball.png") && fs::exists(folder / "ball.exr"); }));

@@ -26,12 +26,15 @@ pilot_measures measures_of_a_room()
 
 TEST(chosen_settings, are_numbers_in_their_ranges)
 {
-    const auto s = chosen_settings(measures_of_a_room(), automatic_settings(), 0.2);
+    auto automatic = automatic_settings();
+    EXPECT_THROW(check_numbers(automatic), std::invalid_argument);
+    EXPECT_NO_THROW(check(automatic));
+    automatic.estimate.max_radius = 0.2;
+    EXPECT_TRUE(is_automatic(automatic));
+    const auto s = chosen_settings(measures_of_a_room(), automatic);
     EXPECT_FALSE(is_automatic(s));
-    EXPECT_NO_THROW(check(s));
-    EXPECT_EQ(s.estimate.max_radius, 0.2);
+    EXPECT_NO_THROW(check_numbers(s));
     EXPECT_GE(s.output.passes, 8u);
-    EXPECT_TRUE(is_automatic(automatic_settings()));
 }
 
 TEST(chosen_settings, leave_what_is_given)
@@ -39,7 +42,7 @@ TEST(chosen_settings, leave_what_is_given)
     const auto given = [](auto&& give) {
         auto s = automatic_settings();
         give(s);
-        return chosen_settings(measures_of_a_room(), s, 0.2);
+        return chosen_settings(measures_of_a_room(), s);
     };
     EXPECT_EQ(given([](auto& s) { s.map.photons = 777; }).map.photons, 777u);
     EXPECT_EQ(given([](auto& s) { s.map.caustic_photons = 0; }).map.caustic_photons, 0u);
@@ -61,7 +64,7 @@ TEST(chosen_settings, follow_the_light)
     const auto chosen = [](auto&& change) {
         auto m = measures_of_a_room();
         change(m);
-        return chosen_settings(m, automatic_settings(), 0.2);
+        return chosen_settings(m, automatic_settings());
     };
     const auto share = [](const render_settings& s) { return 1.0 * s.estimate.k / s.map.photons; };
     const auto plain = chosen([](auto&) {});
@@ -80,7 +83,7 @@ TEST(chosen_settings, follow_the_light)
 TEST(chosen_settings, have_the_least_error_in_their_time)
 {
     const auto m = measures_of_a_room();
-    const auto best = chosen_settings(m, automatic_settings(), 0.2);
+    const auto best = chosen_settings(m, automatic_settings());
     const auto error = [&](double photons, double caustic) {
         detail::pass_plan plan{{caustic, photons}, {}, static_cast<double>(best.view.light_samples)};
         const double passes = 80 * m.pixels / plan.cost(m);

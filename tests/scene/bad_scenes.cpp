@@ -598,9 +598,18 @@ namespace {
                 for (const double bad : {std::nextafter(row.values.least, -infinity),
                          std::nextafter(row.values.most, infinity), nan, infinity, -infinity})
                     is(bad, false);
-            } else if constexpr (std::is_same_v<values, t::any_length>) {
+            } else if constexpr (std::is_same_v<values, t::whole_or_auto>) {
+                const auto& range = row.values.range;
+                for (const auto good : {range.least, range.most, automatic_number})
+                    is(good, true);
+                if (range.least > 0)
+                    is(range.least - 1, false);
+                is(range.most + 1, false);
+                is(automatic_number - 1, false);
+            } else if constexpr (std::is_same_v<values, t::length_or_auto>) {
                 is(1e-9, true);
-                for (const double bad : {0.0, -1.0, nan, infinity, -infinity})
+                is(automatic_length, true);
+                for (const double bad : {0.0, -0.999, nan, infinity, -infinity})
                     is(bad, false);
             } else if constexpr (std::is_same_v<values, t::cells>) {
                 is(glm::uvec3(0), true);

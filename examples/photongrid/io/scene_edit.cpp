@@ -209,20 +209,35 @@ namespace {
         // --- settings ---
         void edit_settings(const render_settings& settings)
         {
-            const auto were = nlohmann::json::parse(settings_text(before_.render)),
-                       are = nlohmann::json::parse(settings_text(settings));
-            const auto& v = at(root(), "render");
+            const auto json_of = [](const render_settings& r) { return nlohmann::json::parse(settings_text(r)); };
+            const auto were = json_of(before_.render), are = json_of(settings);
+            const auto* v = root().find("render");
+            const auto named = [&](const char* name) { return v == nullptr ? nullptr : v->find(name); };
+            // What the reader takes for settings that are not named changes with those that are.
+            const auto unnamed = json_of(settings_unless_named(settings.map.photons != automatic_number,
+                named(setting_table::grid.name) != nullptr || settings.map.grid != glm::uvec3(0)));
+            std::string added; // to an object that has no members yet
             for_each_setting([&](const auto& row) {
-                if (row.use == in_scenes::never || were[row.name] == are[row.name])
+                const auto* given = named(row.name);
+                if (row.use == in_scenes::never || are[row.name] == (given ? were : unnamed)[row.name])
                     return;
                 auto value = are[row.name].dump();
-                if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::any_length>)
-                    value = shortest(in_unit(row.of(settings), length_));
-                if (const auto* given = v.find(row.name))
+                if constexpr (std::is_same_v<std::decay_t<decltype(row.values)>, setting_table::length_or_auto>)
+                    if (row.of(settings) != row.values.automatic)
+                        value = shortest(in_unit(row.of(settings), length_));
+                if (given)
                     replacements_.push_back({given->place, given->end, value});
+                else if (v != nullptr && !v->items.empty())
+                    add_member(*v, row.name, value);
                 else
-                    add_member(v, row.name, value);
+                    added += (added.empty() ? "\"" : ", \"") + std::string(row.name) + "\": " + value;
             });
+            if (added.empty())
+                return;
+            if (v != nullptr)
+                replacements_.push_back({v->place, v->end, "{" + added + "}"});
+            else
+                add_member(root(), "render", "{" + added + "}");
         }
 
         std::string replaced()

@@ -49,7 +49,9 @@ namespace {
             if (count_lights(scene_) == 0)
                 fail(at(root(), "lights").place, "lights: the scene has none; expected at least one");
             check_shapes();
-            read_render(at(root(), "render"));
+            scene_.render = settings_unless_named(false, false);
+            if (const auto* render = root().find("render"))
+                read_render(*render);
             if (const auto* paper = root().find("as_paper"))
                 read_settings(*paper, "as_paper", scene_.paper.emplace(as_paper(scene_.render)));
             return std::move(scene_);
@@ -289,19 +291,27 @@ namespace {
         }
 
         // --- settings ---
+        static bool is_auto(const json_value& v) { return v.kind == json_kind::string && v.text == "auto"; }
         void set(const json_value& v, const setting_table::whole_range& r, std::uint32_t& to) const
         {
             to = whole(v, r.least, r.most);
         }
         void set(const json_value& v, const setting_table::real_or_auto& r, std::optional<double>& to) const
         {
-            if (v.kind == json_kind::string && v.text == "auto")
+            if (is_auto(v))
                 to = std::nullopt;
             else
                 to = in_range(v, r.range);
         }
         void set(const json_value& v, const real_range& r, double& to) const { to = in_range(v, r); }
-        void set(const json_value& v, const setting_table::any_length&, double& to) const { to = radius(v); }
+        void set(const json_value& v, const setting_table::whole_or_auto& r, std::uint32_t& to) const
+        {
+            to = is_auto(v) ? r.automatic : whole(v, r.range.least, r.range.most, ", or \"auto\"");
+        }
+        void set(const json_value& v, const setting_table::length_or_auto& r, double& to) const
+        {
+            to = is_auto(v) ? r.automatic : radius(v, ", or \"auto\"");
+        }
         template <class Value, std::size_t N>
         void set(const json_value& v, const setting_table::one_of<Value, N>& choice, Value& to) const
         {
@@ -319,7 +329,7 @@ namespace {
         }
         void set(const json_value& v, const setting_table::cells& c, glm::uvec3& to) const
         {
-            if (v.kind == json_kind::string && v.text == "auto") {
+            if (is_auto(v)) {
                 to = glm::uvec3(0);
                 return;
             }
@@ -348,15 +358,11 @@ namespace {
                 to.flattening = static_cast<float>(in_range(*flattening, p.flattening));
         }
 
-        /// A scene that names neither a map nor a grid gets the map that suits its photons.
         void read_render(const json_value& v)
         {
-            auto& map = scene_.render.map;
-            if (v.find("grid") == nullptr) {
-                map.grid = glm::uvec3(0);
-                if (v.find("map") == nullptr)
-                    map.builder = map_builder::automatic;
-            }
+            const auto* photons = v.find(setting_table::photons.name);
+            scene_.render = settings_unless_named(
+                photons != nullptr && !is_auto(*photons), v.find(setting_table::grid.name) != nullptr);
             read_settings(v, "render", scene_.render);
         }
 
@@ -376,6 +382,18 @@ namespace {
         std::vector<std::string> material_names_;
     };
 } // namespace
+
+render_settings settings_unless_named(bool photons, bool grid)
+{
+    auto s = automatic_settings();
+    if (photons) {
+        s = with_numbers(s, {});
+        s.estimate.k = automatic_number;
+    }
+    if (grid)
+        s.map.builder = map_settings{}.builder;
+    return s;
+}
 
 scene parse_scene(const std::string& file, std::string text, file_listener before_reading)
 {

@@ -18,4 +18,8 @@ scene parse_scene(const std::string& file, std::string text, file_listener befor
 /// \throws scene_error.
 scene read_scene(const std::string& path, file_listener before_reading = {});
 
+/// The settings of a scene file that names none. `photons`: it has a number of photons; other numbers, but for `k`, are
+/// then those of render_settings and not automatic. `grid`: it has a grid, and `map` is then `sort`.
+render_settings settings_unless_named(bool photons, bool grid);
+
 } // namespace photongrid

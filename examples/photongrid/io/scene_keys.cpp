@@ -9,7 +9,7 @@ namespace photongrid {
 namespace {
     constexpr bool must = true, may = false;
     constexpr scene_key scene_keys[] = {{"$schema", may}, {"photongrid", must}, {"name", may}, {"units", must},
-        {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", must}, {"as_paper", may}};
+        {"camera", must}, {"materials", must}, {"shapes", must}, {"lights", must}, {"render", may}, {"as_paper", may}};
     constexpr scene_key units_keys[] = {{"length", must}, {"power", must}};
     constexpr scene_key camera_keys[] = {{"position", must}, {"look_at", must}, {"up", may}, {"vertical_fov", must}};
     /// Of meshes, as shapes and as lights.
@@ -104,18 +104,8 @@ namespace {
             std::vector<scene_key> keys;
             for_each_setting([&](const auto& row) {
                 if (row.use != in_scenes::never)
-                    keys.push_back({row.name, row.use == in_scenes::required});
+                    keys.push_back({row.name, may});
             });
-            return keys;
-        }();
-        return all;
-    }
-    const std::vector<scene_key>& as_paper_keys()
-    {
-        static const auto all = [] {
-            auto keys = render_keys();
-            for (auto& k : keys)
-                k.required = may;
             return keys;
         }();
         return all;
@@ -138,7 +128,7 @@ std::span<const object_keys> known_objects()
 {
     static const auto all = [] {
         std::vector<object_keys> objects{{"scene", scene_keys}, {"units", units_keys}, {"camera", camera_keys},
-            {"render", render_keys()}, {"as_paper", as_paper_keys()}, {"leaks", leaks_keys}, {"rotate", rotate_keys},
+            {"render", render_keys()}, {"as_paper", render_keys()}, {"leaks", leaks_keys}, {"rotate", rotate_keys},
             {"texture", texture_keys}, {"number_texture", number_texture_keys}};
         for (const auto* kinds : {&material_keys(), &shape_keys(), &light_keys()})
             for (const auto& k : *kinds)

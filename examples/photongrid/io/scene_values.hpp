@@ -98,9 +98,11 @@ public:
         return number(v, r.least, r.most, what + " from " + r.ends());
     }
 
-    std::uint32_t whole(const json_value& v, std::uint32_t low, std::uint32_t high) const
+    /// `or_else`: what may be there instead, for the message.
+    std::uint32_t whole(
+        const json_value& v, std::uint32_t low, std::uint32_t high, const std::string& or_else = "") const
     {
-        const auto expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+        const auto expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high) + or_else;
         const double d = number(v, low, high, expected);
         if (d != std::floor(d))
             wrong(v, expected);
@@ -121,9 +123,9 @@ public:
     {
         return in_units(v, length_, -max_length, max_length, "a length of at most 1e9 m");
     }
-    double radius(const json_value& v) const
+    double radius(const json_value& v, const std::string& or_else = "") const
     {
-        return in_units(v, length_, min_length, max_length, "a length from 1e-9 m to 1e9 m");
+        return in_units(v, length_, min_length, max_length, "a length from 1e-9 m to 1e9 m" + or_else);
     }
 
     template <class Element>

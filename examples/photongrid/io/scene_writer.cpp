@@ -97,7 +97,11 @@ namespace {
     {
         return v ? json(*v) : json("auto");
     }
-    json written(const setting_table::any_length&, double v) { return v; }
+    json written(const setting_table::whole_or_auto& r, std::uint32_t v)
+    {
+        return v == r.automatic ? json("auto") : json(v);
+    }
+    json written(const setting_table::length_or_auto& r, double v) { return v == r.automatic ? json("auto") : json(v); }
     json written(const real_range&, double v) { return v; }
     template <class Value, std::size_t N>
     json written(const setting_table::one_of<Value, N>& choice, Value v)

@@ -45,20 +45,14 @@ namespace {
         return std::string(w.what) + (w.more[0] != '\0' ? std::string(". ") + w.more : "");
     }
 
-    /// The settings of a scene that gives those that it must, in JSON.
+    /// The settings of a scene that gives none, in JSON.
     json defaults()
     {
-        json render;
-        for_each_setting([&](const auto& row) {
-            if (row.use == in_scenes::required)
-                render[row.name] = 1;
-        });
-        render[setting_table::size.name] = {1, 1};
         const json scene = {{"photongrid", 1}, {"units", {{"length", "m"}, {"power", "W"}}},
             {"camera", {{"position", {0, 0, 1}}, {"look_at", {0, 0, 0}}, {"vertical_fov", 40}}},
             {"materials", {{"m", {{"type", "lambertian"}, {"reflectance", 0.5}}}}},
             {"shapes", {{{"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", 0.1}, {"material", "m"}}}},
-            {"lights", {{{"type", "point"}, {"position", {0, 1, 0}}, {"power", 1}}}}, {"render", render}};
+            {"lights", {{{"type", "point"}, {"position", {0, 1, 0}}, {"power", 1}}}}};
         return json::parse(settings_text(parse_scene("defaults.json", scene.dump()).render));
     }
 
@@ -78,7 +72,6 @@ namespace {
     {
         return {{"type", "number"}, {"minimum", number(r.least)}, {"maximum", number(r.most)}};
     }
-    json schema_of(const setting_table::any_length&) { return {{"$ref", "#/$defs/length"}}; }
     template <class Value, std::size_t N>
     json schema_of(const setting_table::one_of<Value, N>& choice)
     {
@@ -95,6 +88,8 @@ namespace {
         return {{"anyOf", both}};
     }
     json schema_of(const setting_table::real_or_auto& r) { return or_auto(schema_of(r.range)); }
+    json schema_of(const setting_table::whole_or_auto& r) { return or_auto(schema_of(r.range)); }
+    json schema_of(const setting_table::length_or_auto&) { return or_auto({{"$ref", "#/$defs/length"}}); }
     json schema_of(const setting_table::cells& c)
     {
         return or_auto(numbers(3, schema_of(setting_table::whole_range{1, c.most_per_axis})));
@@ -112,7 +107,6 @@ namespace {
         return std::to_string(r.least) + " to " + std::to_string(r.most);
     }
     std::string page_of(const real_range& r) { return r.ends(); }
-    std::string page_of(const setting_table::any_length&) { return "a length"; }
     template <class Value, std::size_t N>
     std::string page_of(const setting_table::one_of<Value, N>& choice)
     {
@@ -122,6 +116,8 @@ namespace {
         return words;
     }
     std::string page_of(const setting_table::real_or_auto& r) { return page_of(r.range) + ", or " + quoted("auto"); }
+    std::string page_of(const setting_table::whole_or_auto& r) { return page_of(r.range) + ", or " + quoted("auto"); }
+    std::string page_of(const setting_table::length_or_auto&) { return "a length, or " + quoted("auto"); }
     std::string page_of(const setting_table::cells& c)
     {
         return "`[x, y, z]`, each 1 to " + std::to_string(c.most_per_axis) + ", or " + quoted("auto");
@@ -160,11 +156,12 @@ namespace {
         return text.substr(0, from + before.size() + 2) + inside + text.substr(to + 1);
     }
 
-    std::string schema_object(const std::string& description, const std::string& properties, const json& required)
+    std::string schema_object(const std::string& description, const std::string& properties)
     {
         return "      \"type\": \"object\",\n      \"description\": " + json(description).dump()
-            + ",\n      \"properties\": {\n" + properties + "        \"comment\": true\n      },\n      \"required\": "
-            + spaced(required) + ",\n      \"additionalProperties\": false\n    },\n";
+            + ",\n      \"properties\": {\n" + properties
+            + "        \"comment\": true\n      },\n      \"required\": [],\n      \"additionalProperties\": false\n   "
+              " },\n";
     }
 } // namespace
 
@@ -184,17 +181,12 @@ std::string schema_with_settings(const std::string& text)
 {
     const auto by_default = defaults();
     std::string all, of_paper;
-    json required = json::array();
     for_each_setting([&](const auto& row) {
         if (row.use == in_scenes::never)
             return;
         auto about = marked(row.words.what, itself, itself);
-        if (row.use == in_scenes::required)
-            required.push_back(row.name);
-        else {
-            const auto& v = by_default.at(row.name);
-            about += "; default " + (v.is_string() ? v.template get<std::string>() : spaced(v));
-        }
+        const auto& v = by_default.at(row.name);
+        about += "; default " + (v.is_string() ? v.template get<std::string>() : spaced(v));
         auto property = schema_of(row.values);
         property["description"] = about;
         const auto key = "        " + json(row.name).dump() + ": ";
@@ -202,11 +194,11 @@ std::string schema_with_settings(const std::string& text)
         of_paper += key + spaced({{"$ref", "#/$defs/render/properties/" + std::string(row.name)}}) + ",\n";
     });
     return replaced(text, "    \"render\": {",
-        schema_object("how to render; its settings are written by photongrid_setting_texts", all, required)
+        schema_object("how to render; its settings are written by photongrid_setting_texts", all)
             + "    \"as_paper\": {\n"
             + schema_object("settings for the paper's method (render --as-paper) where they differ from those of "
                             "\"render\" with the paper's estimate and one eye ray per pixel",
-                of_paper, json::array()),
+                of_paper),
         "    \"scene\": {");
 }
 
@@ -229,10 +221,9 @@ std::string page_with_settings(const std::string& text)
             const auto& v = by_default.at(row.name);
             rows += "| " + (section.empty() ? key : "[" + key + "](#" + section + ")") + " | " + page_of(row.values)
                 + " | " + marked(all_of(row.words), name_of, quoted) + " | "
-                + (row.use == in_scenes::required ? "required"
-                        : v.is_string()           ? v.template get<std::string>()
-                        : v.is_object()           ? "`" + spaced(v) + "`"
-                                                  : spaced(v))
+                + (v.is_string()        ? v.template get<std::string>()
+                        : v.is_object() ? "`" + spaced(v) + "`"
+                                        : spaced(v))
                 + " |\n";
         });
     }

@@ -101,6 +101,18 @@ void render_thread::work()
     renderer_.reset(); // in this thread: an OpenGL context belongs to it
 }
 
+/// Those of the current request. What was chosen stays while the camera moves, and while parts do.
+render_settings render_thread::settings_to_draw() const
+{
+    const auto& now = current_.what;
+    if (!chosen_for_)
+        return now.settings;
+    const auto& then = chosen_for_->what;
+    const bool stays = then.settings == now.settings && then.backend == now.backend
+        && (current_.moving || same_light_paths(then.scene, now.scene));
+    return stays ? chosen_ : now.settings;
+}
+
 /// Starts the requested drawing once it is due. Returns whether there is something to draw.
 bool render_thread::take()
 {
@@ -132,7 +144,7 @@ bool render_thread::take()
     }
     begun_ = clock::now();
     // Running estimates need the whole map; while things move, previews with fewer photons come sooner.
-    renderer_->start(current_.what.scene, current_.what.settings, {.running_estimates = !current_.moving});
+    renderer_->start(current_.what.scene, settings_to_draw(), {.running_estimates = !current_.moving});
     drawing_ = true;
     {
         const std::lock_guard lock(guard_);
@@ -150,6 +162,10 @@ bool render_thread::take()
 void render_thread::draw()
 {
     const bool whole = renderer_->step(step_time_);
+    if (renderer_->stats().pilot && (!chosen_for_ || chosen_for_->number != current_.number)) {
+        chosen_for_ = current_;
+        chosen_ = renderer_->settings();
+    }
     passes_ = total_cost(renderer_->costs()).passes;
     const bool news = renderer_->pictures() > seen_;
     if (news) {

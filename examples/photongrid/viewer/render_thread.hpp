@@ -76,6 +76,7 @@ private:
     void publish(double ms);
     void fail(const std::string& what);
     void tell(const std::string& event, const std::string& more = "") const;
+    render_settings settings_to_draw() const;
 
     renderer_maker make_;
     renderer_options options_;
@@ -98,6 +99,8 @@ private:
     std::unique_ptr<renderer> renderer_;
     std::string opened_backend_;
     request current_;
+    std::optional<request> chosen_for_; ///< the request for which settings were chosen last
+    render_settings chosen_;
     bool drawing_ = false;
     std::uint64_t seen_ = 0; ///< pictures of the current request
     std::optional<image> last_;

@@ -57,6 +57,35 @@ void settings_panel::control(const Row& row, const setting_table::one_of<Value, 
     explain(row, label);
 }
 
+/// The box, left of its number, of a setting that the renderer can choose. Returns whether it does.
+template <class Row>
+bool settings_panel::is_automatic(const Row& row, const char* label)
+{
+    const auto box = std::string("automatic ") + label;
+    const auto now = row.of(document_.now().settings);
+    bool automatic = now == row.values.automatic;
+    const auto& gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = ImGui::CalcItemWidth() - ImGui::GetFrameHeight() - gap;
+    if (ImGui::Checkbox(("##" + box).c_str(), &automatic)) {
+        const render_settings by_default;
+        change(label, [&](render_settings& s) { row.of(s) = automatic ? row.values.automatic : row.of(by_default); });
+    }
+    tip(box.c_str(), "Automatic: the renderer chooses it for the scene.");
+    ImGui::SameLine(0, gap);
+    ImGui::SetNextItemWidth(width);
+    if (automatic) {
+        ImGui::LabelText(label, "auto");
+        explain(row, label);
+    }
+    return automatic;
+}
+template <class Row>
+void settings_panel::control(const Row& row, const setting_table::whole_or_auto& v, const char* label)
+{
+    if (!is_automatic(row, label))
+        control(row, v.range, label);
+}
+
 /// By a slider whose steps are even in the number's logarithm.
 template <class Row>
 void settings_panel::control(const Row& row, const setting_table::whole_range&, const char* label)
@@ -79,9 +108,10 @@ void settings_panel::control(const Row& row, const real_range&, const char* labe
 }
 
 template <class Row>
-void settings_panel::control(const Row& row, const setting_table::any_length&, const char* label)
+void settings_panel::control(const Row& row, const setting_table::length_or_auto&, const char* label)
 {
-    slide(row, label, ImGuiSliderFlags_Logarithmic);
+    if (!is_automatic(row, label))
+        slide(row, label, ImGuiSliderFlags_Logarithmic);
 }
 
 template <class Row>
@@ -202,10 +232,13 @@ void settings_panel::draw_backend()
 void settings_panel::key(const key_press& p, double shown_exposure)
 {
     const bool up = p.shift;
+    const render_settings by_default;
     const auto doubled = [&](const auto& row) {
         change(row.name, [&](render_settings& s) {
             auto& value = row.of(s);
-            value = std::clamp(up ? value * 2 : value / 2, row.values.least, row.values.most / 2);
+            if (value == row.values.automatic)
+                value = row.of(by_default);
+            value = std::clamp(up ? value * 2 : value / 2, row.values.range.least, row.values.range.most / 2);
         });
     };
     const auto next = [&](const auto& row) {
@@ -220,7 +253,12 @@ void settings_panel::key(const key_press& p, double shown_exposure)
     switch (p.key) {
     case 'k': doubled(setting_table::k); return;
     case 'n': doubled(setting_table::photons); return;
-    case 'r': change("radius", [&](render_settings& s) { s.estimate.max_radius *= up ? 1.25 : 0.8; }); return;
+    case 'r':
+        change("radius", [&](render_settings& s) {
+            auto& r = s.estimate.max_radius;
+            r = (r == automatic_length ? by_default.estimate.max_radius : r) * (up ? 1.25 : 0.8);
+        });
+        return;
     case 'e':
         change("exposure", [&](render_settings& s) {
             s.output.exposure = std::clamp(s.output.exposure.value_or(shown_exposure) + (up ? 0.5 : -0.5), -64.0, 64.0);

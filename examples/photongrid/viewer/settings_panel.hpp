@@ -31,7 +31,9 @@ private:
     template <class Row>
     void control(const Row& row, const real_range&, const char* label);
     template <class Row>
-    void control(const Row& row, const setting_table::any_length&, const char* label);
+    void control(const Row& row, const setting_table::whole_or_auto&, const char* label);
+    template <class Row>
+    void control(const Row& row, const setting_table::length_or_auto&, const char* label);
     template <class Row>
     void control(const Row& row, const setting_table::real_or_auto&, const char* label);
     template <class Row>
@@ -40,6 +42,8 @@ private:
     void control(const Row& row, const setting_table::policies&, const char* label);
     template <class Row>
     void control(const Row& row, const setting_table::pixels&, const char* label);
+    template <class Row>
+    bool is_automatic(const Row& row, const char* label);
     template <class Row>
     void slide(const Row& row, const char* label, int flags);
     template <class Row>

@@ -87,9 +87,8 @@ namespace detail {
     }
 } // namespace detail
 
-/// `s` with numbers in place of what is automatic, by what a pilot measured. `radius`: m, in place of an automatic
-/// max_radius.
-inline render_settings chosen_settings(const pilot_measures& m, render_settings s, double radius)
+/// `s` with numbers in place of automatic ones, by what a pilot measured.
+inline render_settings chosen_settings(const pilot_measures& m, render_settings s)
 {
     using one = std::vector<double>;
     const auto given = [](std::uint32_t number, double otherwise) {
@@ -147,8 +146,6 @@ inline render_settings chosen_settings(const pilot_measures& m, render_settings 
     if (s.view.light_samples == automatic_number)
         s.view.light_samples = whole(best.light_samples);
     s.view.spp = whole(given(s.view.spp, 1));
-    if (s.estimate.max_radius == automatic_length)
-        s.estimate.max_radius = radius;
     if (s.output.passes == automatic_number) {
         double passes = 8;
         while (best.error(m, passes) > aim && (passes + 1) * best.cost(m) <= most_cost)

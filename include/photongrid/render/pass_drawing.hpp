@@ -23,7 +23,7 @@ public:
         const view_pass_settings& how, render_stats& stats)
         : device_(device), built_(built), view_(view), settings_(settings), how_(how), stats_(stats)
     {
-        check(settings);
+        check_numbers(settings);
         if (how.preview || how.band)
             throw std::invalid_argument("pass_drawing: how: a pass has no preview, and all bands");
     }

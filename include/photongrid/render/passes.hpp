@@ -16,6 +16,7 @@ namespace photongrid {
 /// `s`.
 inline render_settings settings_of_pass(render_settings s, std::uint32_t pass)
 {
+    s.output.passes = s.output.passes_at_most();
     if (pass > 0) {
         // Two rounds of splitmix64 (Steele, Lea and Flood 2014) over (seed, pass).
         std::uint64_t x = (std::uint64_t{s.seed} << 32 | pass) + 0x9E3779B97F4A7C15u;

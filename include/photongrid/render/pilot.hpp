@@ -14,11 +14,17 @@
 
 namespace photongrid {
 
+/// The radius of searches in place of an automatic one, m.
+inline double radius_for(const scene_layout& l)
+{
+    return std::max(0.1 * static_cast<double>(glm::length(l.high - l.low)), 1e-6);
+}
+
 /// Draws the small pictures of a pilot, one a step.
 template <backend B>
 class pilot {
 public:
-    /// It draws nothing yet. `device` must outlive it.
+    /// It draws nothing yet. `device` must outlive it. `settings`: with a number as max_radius.
     pilot(B& device, std::shared_ptr<world<B>> of, const scene& s, const render_settings& settings)
         : device_(device), world_(std::move(of)), view_(s.camera), settings_(settings)
     {
@@ -41,7 +47,6 @@ public:
         settings_.map.builder = map_builder::automatic;
         settings_.map.photons = settings_.map.caustic_photons = photons;
         settings_.estimate.k = settings_.estimate.caustic_k = some;
-        settings_.estimate.max_radius = radius();
         settings_.estimate.radii = radius_kind::per_pass;
         settings_.estimate.indirect = indirect_kind::map;
         settings_.view.spp = settings_.view.light_samples = 1;
@@ -53,18 +58,13 @@ public:
     {
         switch (step_++) {
         case 0: draw_direct(); break;
-        case 1: draw(caustic_, light_part::caustic); break;
-        case 2: draw(other_, light_part::indirect); measure();
+        case 1: draw_map(caustic_, light_part::caustic); break;
+        case 2: draw_map(other_, light_part::indirect); measure();
         }
         return step_ > 2;
     }
     const pilot_measures& measures() const { return measures_; }
-    /// The largest radius of searches, for a scene of this size, m.
-    double radius() const
-    {
-        const auto& l = world_->scene.layout;
-        return std::max(0.1 * static_cast<double>(glm::length(l.high - l.low)), 1e-6);
-    }
+    double fraction() const { return step_ / 3.0; }
 
 private:
     static constexpr uint photons = 4096;
@@ -94,6 +94,9 @@ private:
     }
     void draw_direct()
     {
+        direct_.fill(values(std::size_t{settings_.output.width} * settings_.output.height));
+        if (!shows(light_part::direct))
+            return;
         auto settings = settings_;
         settings.output.only = light_part::direct;
         const auto empty = build_map(device_, world_, settings);
@@ -103,11 +106,15 @@ private:
         for (uint i = 0; i < 2; ++i)
             direct_[4 + i] = drawn(empty, settings, i + 1);
     }
-    void draw(drawn_maps& out, light_part only)
+    bool shows(light_part part) const
+    {
+        return settings_.output.only == light_part::all || settings_.output.only == part;
+    }
+    void draw_map(drawn_maps& out, light_part only)
     {
         auto settings = settings_;
         settings.output.only = only;
-        if (requests_of(settings, world_->scene.layout).empty())
+        if (!shows(only) || requests_of(settings, world_->scene.layout).empty())
             return;
         for (uint i = 0; i < 2; ++i) {
             auto& of = out.maps[i];
@@ -137,13 +144,17 @@ private:
         for (std::size_t i = 0; i < n; ++i)
             all += light[i] = (direct_[4][i] + direct_[5][i]) / 2 + in(caustic_, i) + in(other_, i);
         const double dark = 0.01 * all / static_cast<double>(n);
-        /// The mean over most pixels of what is a part of the radiance squared.
+        /// The mean over most of the pixels that are lit, of what is a part of the radiance squared.
         const auto relative = [&](const auto& of_pixel) {
-            values parts(n);
+            values parts;
             for (std::size_t i = 0; i < n; ++i)
-                parts[i] = dark > 0 ? of_pixel(i) / ((light[i] + dark) * (light[i] + dark)) : 0.0;
+                if (light[i] > 0)
+                    parts.push_back(of_pixel(i) / ((light[i] + dark) * (light[i] + dark)));
+            if (parts.empty())
+                return 0.0;
             const auto by_size = [](double x, double y) { return std::abs(x) < std::abs(y); };
-            const auto kept = static_cast<std::ptrdiff_t>(n - n / 100); // what a ray meets by chance does not count
+            // What a ray meets by chance does not count.
+            const auto kept = static_cast<std::ptrdiff_t>(parts.size() - parts.size() / 100);
             std::nth_element(parts.begin(), parts.begin() + kept - 1, parts.end(), by_size);
             return std::accumulate(parts.begin(), parts.begin() + kept, 0.0) / static_cast<double>(kept);
         };

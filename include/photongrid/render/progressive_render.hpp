@@ -1,6 +1,7 @@
 // The interactive loop (section 3.4): a picture is started, advanced in steps, displayed at any time, changed and
 // cancelled. It has the only loop over passes, each of which is figure 1 of the paper:
 //
+//     world  -> pilot, if settings are automatic
 //     world  -> trace_photons -> build_map ------------------+
 //     camera -> trace_eye -> direct_light -> gather -> irradiance (2.3) -> shade -> film
 //
@@ -14,6 +15,7 @@
 #include <photongrid/render/map_keeper.hpp>
 #include <photongrid/render/pass_drawing.hpp>
 #include <photongrid/render/picture_end.hpp>
+#include <photongrid/render/pilot.hpp>
 #include <photongrid/render/renderer.hpp>
 
 #include <algorithm>
@@ -44,7 +46,6 @@ public:
         }
         scene_ = s;
         settings_ = settings;
-        settings_.output.passes = settings.output.passes_at_most();
         previews_ = previews;
         begin_picture();
         started_ = true;
@@ -53,6 +54,9 @@ public:
     {
         if (!started_)
             throw std::logic_error("progressive_render::resume: no picture was started; call start()");
+        if (is_automatic(settings_))
+            throw std::logic_error("progressive_render::resume: settings are automatic; call step() until they are "
+                                   "numbers, or start() with numbers");
         check(s, settings_);
         if (preview_ || number_ || film_.passes() > 0)
             throw std::logic_error(
@@ -105,6 +109,7 @@ public:
             maps_.clear();
             radius_maps_.clear();
             making_world_.reset();
+            pilot_.reset();
             world_.reset();
             begin_picture();
             throw;
@@ -154,8 +159,9 @@ private:
         if (finished())
             return {"finished", 1, 0, 1, settings_.map.photons, film_.passes()};
         if (!has_world())
-            return {"prepare_scene", making_world_ ? making_world_->fraction() : 0.0, pixels, 1, settings_.map.photons,
-                film_.passes()};
+            return {"prepare_scene", making_world_ ? making_world_->fraction() : 0.0, pixels};
+        if (is_automatic(settings_))
+            return {"choose_settings", pilot_ ? pilot_->fraction() : 0.0, pixels};
         const auto& made = radius_maps_.making_photons() ? radius_maps_ : maps_;
         if (const auto photons = made.making_photons(); photons || (!preview_ && !pass_ && rows_done() == 0))
             return {made.fraction() < 1 ? "trace_photons" : "build_map", made.fraction(), pixels, 1,
@@ -183,6 +189,7 @@ private:
 
     void begin_picture()
     {
+        pilot_.reset();
         preview_.reset();
         pass_.reset();
         number_.reset();
@@ -203,6 +210,7 @@ private:
         stats_.estimate = {};
         stats_.photons = {};
         stats_.invalid_pixels = 0;
+        stats_.pilot.reset();
         stats_.end = {};
     }
 
@@ -228,6 +236,9 @@ private:
         }
         return true;
     }
+
+    /// Replaces automatic settings by numbers.
+    bool choose_settings();
 
     // Maps.
 
@@ -502,6 +513,7 @@ private:
     std::shared_ptr<world<B>> world_; ///< of scene_, or of the one before until that of scene_ is ready
     std::optional<world_building<B>> making_world_;
     std::uint64_t world_number_ = 0, wanted_world_ = 0; ///< numbers of world_, and of the world of scene_
+    std::optional<pilot<B>> pilot_;
     map_keeper<B> maps_;
     map_keeper<B> radius_maps_; ///< shrinking_radii.hpp
 
@@ -529,9 +541,28 @@ progressive_render<B>::progressive_render(B& device)
 }
 
 template <backend B>
+bool progressive_render<B>::choose_settings()
+{
+    if (!is_automatic(settings_))
+        return false;
+    if (settings_.estimate.max_radius == automatic_length)
+        settings_.estimate.max_radius = radius_for(world_->scene.layout);
+    if (!pilot_ && needs_pilot(settings_))
+        pilot_.emplace(device_, world_, scene_, settings_);
+    if (pilot_ && pilot_->advance()) {
+        stats_.pilot = pilot_->measures();
+        settings_ = chosen_settings(*stats_.pilot, settings_);
+        pilot_.reset();
+        judge_ = picture_judge(settings_.output);
+    }
+    return true;
+}
+
+template <backend B>
 bool progressive_render<B>::advance()
 {
-    return prepare_world() || draw_early_previews() || draw_whole_previews() || find_first_radii() || draw_pass();
+    return prepare_world() || choose_settings() || draw_early_previews() || draw_whole_previews() || find_first_radii()
+        || draw_pass();
 }
 
 } // namespace photongrid

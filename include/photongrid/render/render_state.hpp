@@ -17,7 +17,8 @@ namespace photongrid {
 
 /// The progress of a progressive_render.
 struct render_progress {
-    std::string_view stage;       ///< "trace_photons", "build_map", "preview", "radiance_estimate", "finished"
+    /// "prepare_scene", "choose_settings", "trace_photons", "build_map", "preview", "radiance_estimate", "finished"
+    std::string_view stage;
     double fraction = 0;          ///< of the stage, 0 to 1
     std::uint64_t unfinished = 0; ///< pixels whose estimates are not finished
     std::uint32_t divisor = 1;    ///< side of the pixels being drawn, in pixels of the picture

@@ -1,6 +1,7 @@
 // Statistics of a render: counts of photons, and times. The program writes them as JSON (--stats).
 #pragma once
 
+#include <photongrid/render/chosen_settings.hpp>
 #include <photongrid/render/image.hpp>
 #include <photongrid/scene/render_settings.hpp>
 #include <photongrid/trace/photon_stats.hpp>
@@ -8,6 +9,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -61,6 +63,7 @@ struct render_stats {
     stage_stats trace_rays;              ///< eye rays and direct light (2.4)
     stage_stats radiance_estimate;       ///< 2.3
     estimate_stats estimate;             ///< the searches
+    std::optional<pilot_measures> pilot; ///< what decided about settings that nobody gave
     end_stats end;                       ///< of render() and progressive_render
     std::uint64_t invalid_pixels = 0;    ///< pixels that were NaN or infinite before they were set to 0
     std::uint64_t peak_device_bytes = 0; ///< most bytes in buffers since the backend was created

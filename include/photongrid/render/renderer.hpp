@@ -31,15 +31,15 @@ public:
     virtual ~renderer() = default;
 
     /// Starts a picture of `s` with its camera. Work on the picture before is discarded, except for a map that the new
-    /// picture can use (same_map). It returns at once; step() does the work.
+    /// picture can use (same_map). It returns at once; step() does the work, the choice of automatic settings first.
     /// \throws std::invalid_argument for a scene or settings that check() rejects; the picture before is then kept.
     /// \snippet snippets.cpp progressive_render
     virtual void start(const scene& s, const render_settings& settings, const preview_settings& previews = {}) = 0;
     /// Continues from a state() of the same scene, settings and device, without previews. The finished picture has the
-    /// same bytes. Call it after start() and before step().
+    /// same bytes. Call it after start() and before step(), but for steps that choose settings.
     /// \throws std::invalid_argument for the state of another picture: of another size, with passes that this one does
     ///         not have, or with other bands. step() throws it for a state with too many rays.
-    /// \throws std::logic_error before start() or after step().
+    /// \throws std::logic_error before start(), for automatic settings, or once the picture has begun.
     virtual void resume(render_state s) = 0;
     /// The state so far, for resume().
     virtual render_state state() = 0;
@@ -56,6 +56,10 @@ public:
     /// Whether picture() is the finished picture: all its passes are done, or a stop rule has ended it. A picture that
     /// output_settings::seconds ended within its first pass is the best so far, and stats().end has no passes.
     bool finished() const { return started_ && stats_.end.by != ended_by::nothing; }
+    /// The settings of the picture: those that start() was given, with numbers in place of automatic ones as soon as
+    /// they are chosen. They are the same on every machine for the same scene, settings and backend.
+    const render_settings& settings() const { return settings_; }
+
     /// The number of pictures since start(), each better than the one before; 0: there is none yet. A resumed state
     /// with finished passes is one.
     std::uint64_t pictures() const { return pictures_; }
@@ -84,6 +88,16 @@ protected:
     std::uint64_t pictures_ = 0;
     std::atomic<bool> stop_asked_ = false;
 };
+
+/// The settings of a picture of `s`, with numbers in place of automatic ones. It starts that picture.
+/// \throws what start() and step() throw.
+[[nodiscard]] inline render_settings chosen(renderer& device, const scene& s, const render_settings& settings)
+{
+    device.start(s, settings);
+    while (is_automatic(device.settings()))
+        device.step(renderer::milliseconds(0));
+    return device.settings();
+}
 
 /// Renders a whole picture. The observer's `intermediate`, if there is one, is called with previews, then with each
 /// better picture before the last.

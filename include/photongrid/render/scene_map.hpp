@@ -84,7 +84,7 @@ public:
     map_building(B& device, std::shared_ptr<world<B>> of, const render_settings& settings, map_use use = map_use::light)
         : device_(device), settings_(settings), use_(use)
     {
-        check(settings);
+        check_numbers(settings);
         built_.world = std::move(of);
         built_.splits_caustics = settings_.map.caustic_photons > 0;
         for (const auto& request : requests_of(settings_, layout()))

@@ -49,7 +49,7 @@ public:
         : device_(device), built_(built), view_(view), settings_(settings), how_(how), stats_(stats),
           branches_(1u << detail::splits_of(built.scene().layout))
     {
-        check(settings);
+        check_numbers(settings);
         check(view);
         if (const auto& p = how_.preview; p && (p->divisor < 1 || p->k_divisor < 1))
             throw std::invalid_argument("view_pass: preview: divisor and k_divisor must be at least 1");

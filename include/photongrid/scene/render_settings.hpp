@@ -14,7 +14,7 @@
 
 namespace photongrid {
 
-/// A number, or a length, that a pilot chooses for the scene (render/pilot.hpp).
+/// A number, or a length, that the renderer chooses for the scene (render/pilot.hpp).
 inline constexpr std::uint32_t automatic_number = 0xFFFFFFFFu;
 inline constexpr double automatic_length = -1;
 
@@ -124,7 +124,7 @@ struct output_settings {
     std::uint32_t width = 512;  ///< pixels, 1 to 16384
     std::uint32_t height = 512; ///< pixels, 1 to 16384
     /// The picture is the mean of so many passes, each with its own photons, eye rays and shadow rays. With until_error
-    /// or seconds it is the mean of at most so many, and 1 then means most_passes.
+    /// or seconds it is the mean of at most so many, and 1 then means most_passes, as does automatic_number.
     std::uint32_t passes = 1;
     /// The picture ends once its error is at most this (picture_error.hpp): a share of the radiance; 0: off.
     double until_error = 0;
@@ -148,7 +148,10 @@ struct output_settings {
     /// Whether something else than the number of passes may end the picture.
     bool has_stop_rule() const { return until_error > 0 || seconds > 0; }
     /// The number of passes after which the picture ends at the latest.
-    std::uint32_t passes_at_most() const { return has_stop_rule() && passes == 1 ? most_passes : passes; }
+    std::uint32_t passes_at_most() const
+    {
+        return passes == automatic_number || (has_stop_rule() && passes == 1) ? most_passes : passes;
+    }
     /// The same settings, with no rule that ends the picture before its passes.
     output_settings without_stop_rule() const
     {
@@ -182,25 +185,50 @@ struct render_settings {
     bool operator==(const render_settings&) const = default;
 };
 
-/// Whether a pilot has to choose some of the settings.
+namespace detail {
+    /// Calls visit(member) for the numbers of `s` that may be automatic.
+    template <class Settings, class Visit>
+    void for_each_number(Settings& s, const Visit& visit)
+    {
+        for (auto* number : {&s.map.photons, &s.map.caustic_photons, &s.estimate.k, &s.estimate.caustic_k, &s.view.spp,
+                 &s.view.light_samples, &s.output.passes})
+            visit(*number);
+    }
+} // namespace detail
+
+/// Whether numbers have to be measured by a pilot.
+inline bool needs_pilot(const render_settings& s)
+{
+    bool any = false;
+    detail::for_each_number(s, [&](std::uint32_t number) { any |= number == automatic_number; });
+    return any;
+}
+/// Whether the renderer has to choose some of the settings.
 inline bool is_automatic(const render_settings& s)
 {
-    for (const auto number : {s.map.photons, s.map.caustic_photons, s.estimate.k, s.estimate.caustic_k, s.view.spp,
-             s.view.light_samples, s.output.passes})
-        if (number == automatic_number)
-            return true;
-    return s.estimate.max_radius == automatic_length;
+    return needs_pilot(s) || s.estimate.max_radius == automatic_length;
 }
-/// Settings that a pilot chooses, all that can be chosen.
+/// Settings that the renderer chooses, all that it can choose.
 inline render_settings automatic_settings()
 {
     render_settings s;
-    for (auto* number : {&s.map.photons, &s.map.caustic_photons, &s.estimate.k, &s.estimate.caustic_k, &s.view.spp,
-             &s.view.light_samples, &s.output.passes})
-        *number = automatic_number;
+    detail::for_each_number(s, [](std::uint32_t& number) { number = automatic_number; });
     s.estimate.max_radius = automatic_length;
     s.map.grid = glm::uvec3(0);
     s.map.builder = map_builder::automatic;
+    return s;
+}
+/// `s` with the numbers of `otherwise` in place of automatic ones.
+inline render_settings with_numbers(render_settings s, const render_settings& otherwise)
+{
+    const auto use = [](std::uint32_t& number, std::uint32_t of) { number = number == automatic_number ? of : number; };
+    use(s.map.photons, otherwise.map.photons);
+    use(s.map.caustic_photons, otherwise.map.caustic_photons);
+    use(s.estimate.k, otherwise.estimate.k);
+    use(s.estimate.caustic_k, otherwise.estimate.caustic_k);
+    use(s.view.spp, otherwise.view.spp);
+    use(s.view.light_samples, otherwise.view.light_samples);
+    use(s.output.passes, otherwise.output.passes);
     return s;
 }
 
@@ -261,10 +289,11 @@ inline bool keeps_normals(const render_settings& s) { return s.estimate.leaks.ne
 /// The settings that reproduce the paper's method: its estimate (2.3: at least k, constant filter, no leak policy, no
 /// edge correction, no interpolation, no final gather), one pass with one eye ray per pixel, which takes all shadow
 /// rays of the pixel (light_samples times spp: by default 32, as in the paper's Cornell box); routed cells redistribute
-/// power alone (2.2.2). Other settings are unchanged.
+/// power alone (2.2.2). Automatic numbers become the defaults. Other settings are unchanged.
 /// \snippet snippets.cpp as_paper
 inline render_settings as_paper(render_settings s)
 {
+    s = with_numbers(s, {});
     s.estimate.search = search_kind::at_least_k;
     s.estimate.filter = filter_kind::constant;
     s.estimate.bias = bias_kind::paper;
@@ -286,10 +315,15 @@ inline render_settings as_paper(render_settings s)
 
 /// The settings of a consistent picture: its error goes to 0 as passes are added. Radii shrink, indirect light comes
 /// from paths, and the picture has the most passes that it may have unless `s` has more than one or a stop rule. A
-/// routed map becomes an automatic one, since it drops photons. First radii are of at most 50 photons. Other settings
-/// are unchanged.
+/// routed map becomes an automatic one, since it drops photons. First radii are of at most 50 photons. Automatic
+/// numbers become some that suit most scenes: a pilot measures other pictures. Other settings are unchanged.
 inline render_settings as_exact(render_settings s)
 {
+    render_settings usual;
+    usual.map.photons = 200'000;
+    usual.map.caustic_photons = 10'000;
+    usual.view.spp = 1;
+    s = with_numbers(s, usual);
     s.estimate.radii = radius_kind::shrinking;
     s.estimate.indirect = indirect_kind::paths;
     s.estimate.k = std::min(s.estimate.k, 50u);

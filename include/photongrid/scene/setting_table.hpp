@@ -44,6 +44,25 @@ namespace setting_table {
             detail::require(detail::finite(v) && v > 0, std::string(name) + ": must be finite and greater than 0");
         }
     };
+    /// A number, or automatic (auto): a pilot chooses it.
+    struct whole_or_auto {
+        whole_range range;
+        static constexpr auto automatic = automatic_number;
+        void check(const char* name, std::uint32_t v) const
+        {
+            if (v != automatic)
+                range.check(name, v);
+        }
+    };
+    /// A length, m, or automatic (auto): a pilot chooses it.
+    struct length_or_auto {
+        static constexpr auto automatic = automatic_length;
+        void check(const char* name, double v) const
+        {
+            if (v != automatic)
+                any_length{}.check(name, v);
+        }
+    };
     /// One of several words.
     template <class Value, std::size_t N>
     struct one_of {
@@ -114,8 +133,8 @@ namespace setting_table {
     };
 } // namespace setting_table
 
-/// Whether scene files contain a setting.
-enum class in_scenes { required, optional, never };
+/// Whether scene files may contain a setting.
+enum class in_scenes { optional, never };
 
 /// What settings are about, in the order of `--help` and docs/reference/settings.md.
 enum class setting_group { picture, light, photons, estimate, expert };
@@ -187,22 +206,22 @@ namespace setting_table {
         return [=](auto& s) -> auto& { return s.*value; };
     }
 
-    inline constexpr setting size{"size", of(&render_settings::output), pixels{16384}, in_scenes::required,
+    inline constexpr setting size{"size", of(&render_settings::output), pixels{16384}, in_scenes::optional,
         {.group = setting_group::picture, .what = "width and height, pixels"}};
-    inline constexpr setting photons{"photons", of(&map_settings::photons), whole_range{1, 1u << 27},
-        in_scenes::required,
+    inline constexpr setting photons{"photons", of(&map_settings::photons), whole_or_auto{{1, 1u << 27}},
+        in_scenes::optional,
         {.group = setting_group::photons,
             .what = "photons stored",
             .more = "Noise falls with the square root of their number. Tracing and sorting take time in proportion.",
             .slider = {256, 4e6}}};
     inline constexpr setting caustic_photons{"caustic_photons", of(&map_settings::caustic_photons),
-        whole_range{0, 1u << 27}, in_scenes::optional,
+        whole_or_auto{{0, 1u << 27}}, in_scenes::optional,
         {.group = setting_group::photons,
             .what = "caustic photons stored in a map of their own; 0: they are among `photons`",
             .more = "With a map of their own caustics are sharper.",
             .section = "caustic-photons",
             .slider = {0, 1 << 20}}};
-    inline constexpr setting caustic_k{"caustic_k", of(&estimate_settings::caustic_k), whole_range{1, 1u << 24},
+    inline constexpr setting caustic_k{"caustic_k", of(&estimate_settings::caustic_k), whole_or_auto{{1, 1u << 24}},
         in_scenes::optional,
         {.group = setting_group::estimate,
             .what = "photons sought per estimate in the map of `caustic_photons`",
@@ -210,7 +229,7 @@ namespace setting_table {
             .section = "caustic-photons",
             .slider = {1, 2000},
             .matters = [](const render_settings& s) { return s.map.caustic_photons > 0; }}};
-    inline constexpr setting k{"k", of(&estimate_settings::k), whole_range{1, 1u << 24}, in_scenes::required,
+    inline constexpr setting k{"k", of(&estimate_settings::k), whole_or_auto{{1, 1u << 24}}, in_scenes::optional,
         {.group = setting_group::estimate,
             .what = "photons sought per estimate; not used by *fixed_radius*",
             .more
@@ -224,21 +243,21 @@ namespace setting_table {
                     "fine; *at_least_k* finds other photons in it. Cells given in place of *auto* make an automatic "
                     "`map` a sorted one.",
             .slider = {1, 256}}};
-    inline constexpr setting max_radius{"max_radius", of(&estimate_settings::max_radius), any_length{},
-        in_scenes::required,
+    inline constexpr setting max_radius{"max_radius", of(&estimate_settings::max_radius), length_or_auto{},
+        in_scenes::optional,
         {.group = setting_group::estimate,
             .what = "largest search radius; with *fixed_radius*, the radius",
             .more = "Where fewer than `k` photons lie within it, estimates are noisier instead of more blurred. "
                     "Searches in dark regions go this far.",
             .slider = {1e-3, 10, "%.4f m"}}};
-    inline constexpr setting light_samples{"light_samples", of(&view_settings::light_samples), whole_range{1, 65536},
-        in_scenes::optional,
+    inline constexpr setting light_samples{"light_samples", of(&view_settings::light_samples),
+        whole_or_auto{{1, 65536}}, in_scenes::optional,
         {.group = setting_group::light,
             .what = "shadow rays per eye ray and light that has an area or is an environment; other lights take one",
             .more = "Of more than 16 lights each ray goes to one, chosen by estimates of their light. More rays make "
                     "smoother penumbras and take time in proportion.",
             .slider = {1, 256}}};
-    inline constexpr setting spp{"spp", of(&view_settings::spp), whole_range{1, 65536}, in_scenes::optional,
+    inline constexpr setting spp{"spp", of(&view_settings::spp), whole_or_auto{{1, 65536}}, in_scenes::optional,
         {.group = setting_group::picture,
             .what = "eye rays per pixel and pass",
             .more = "More make smoother edges and less noise from glass and lamps, and take time in proportion.",
@@ -251,7 +270,7 @@ namespace setting_table {
                     "middles of the neighbouring pixels",
             .more = "A tent is smoother at edges, and a little blurred. A single eye ray per pixel has no filter."}};
     inline constexpr setting passes{"passes", of(&output_settings::passes),
-        whole_range{1, output_settings::most_passes}, in_scenes::optional,
+        whole_or_auto{{1, output_settings::most_passes}}, in_scenes::optional,
         {.group = setting_group::picture,
             .what = "number of passes averaged, each with its own photons, eye rays and shadow rays; with "
                     "`until_error` or `seconds`, the most (1: no limit)",
@@ -434,6 +453,16 @@ inline void check(const render_settings& s)
     detail::require(s.estimate.edges != edge_correction::polygons || s.estimate.leaks.min_cosine > 0,
         "edge_correction: photons of adjoining walls would count, though their area does not; it needs the leak policy "
         "min_cosine above 0, for example 0.5 (or edge_correction none)");
+}
+/// The same of settings that a pilot no longer has to choose.
+inline void check_numbers(const render_settings& s)
+{
+    check(s);
+    for_each_setting([&](const auto& row) {
+        if constexpr (requires { row.values.automatic; })
+            detail::require(row.of(s) != row.values.automatic,
+                std::string(row.name) + ": is automatic; it must be a number here (renderer::chosen finds one)");
+    });
 }
 
 } // namespace photongrid

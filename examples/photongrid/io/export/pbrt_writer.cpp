@@ -61,9 +61,11 @@ namespace pbrt_export {
                     .parameter("string filename", std::filesystem::path(files_.scene()).stem().string() + ".exr")
                     .line();
                 to_.line("PixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5");
-                to_.word("Sampler \"halton\"")
-                    .parameter("integer pixelsamples", std::uint64_t{r.view.spp} * r.output.passes)
-                    .line();
+                const auto of = [](std::uint32_t number, std::uint64_t if_automatic) {
+                    return number == automatic_number ? if_automatic : number;
+                };
+                const auto samples = of(r.view.spp, 1) * of(r.output.passes, 64);
+                to_.word("Sampler \"halton\"").parameter("integer pixelsamples", samples).line();
                 to_.word("Integrator \"path\"")
                     .parameter("integer maxdepth", std::uint64_t{r.view.depth} + r.map.photon_depth)
                     .line();

@@ -26,8 +26,7 @@ scene_builder::scene_builder(const std::string& path, const import_settings& set
     if (settings.unit && !(*settings.unit >= 1e-9 && *settings.unit <= 1e9))
         throw std::invalid_argument("import_settings: unit: must be from 1e-9 to 1e9 m");
     made_.name = printable(std::filesystem::path(path).stem().string(), 100);
-    made_.render.map.grid = glm::uvec3(0);
-    made_.render.map.builder = map_builder::automatic;
+    made_.render = automatic_settings();
     set_unit(1);
 }
 
@@ -271,25 +270,6 @@ void scene_builder::note_flat_along_z()
         log_.say(file_, "the scene is flat along z; if z is up in it, --z-up turns it");
 }
 
-void scene_builder::choose_settings()
-{
-    const auto b = bounds_of(made_);
-    auto& r = made_.render;
-    r.map.photons = 200'000;
-    const bool focuses = std::any_of(made_.materials.begin(), made_.materials.end(), [](const material& m) {
-        return m.kind == material_kind::mirror || m.kind == material_kind::metal || m.kind == material_kind::glass;
-    });
-    r.map.caustic_photons = focuses ? 10'000 : 2'000; // what coats reflect is dim
-    r.estimate.k = 500;                               // fewer leave blotches on walls
-    r.estimate.max_radius = std::clamp(0.1 * glm::length(b.high - b.low), 1e-6, max_length);
-    r.view.spp = 1;
-    const auto lights = static_cast<std::uint32_t>(std::min<std::size_t>(count_lights(made_), 16));
-    r.view.light_samples = std::clamp(16 / std::max(lights, 1u), 2u, 8u); // fewer leave a sky in a window noisy
-    if (depth_)
-        r.view.depth = r.map.photon_depth = *depth_; // of eye rays and of photons: together they may have more
-    r.output.passes = 16;                            // about 20 s on two cores for 512 x 512 pixels
-}
-
 imported_scene scene_builder::finish()
 {
     if (!has_surfaces(made_))
@@ -306,7 +286,8 @@ imported_scene scene_builder::finish()
         add_default_camera();
         note_flat_along_z();
     }
-    choose_settings();
+    if (depth_) // of eye rays and of photons: together they may have more
+        made_.render.view.depth = made_.render.map.photon_depth = *depth_;
     if (const auto bad = detail::unresolved_in(detail::extent_of(made_)))
         fail_at(bad->place.list == shape_kind<sphere>::list ? sphere_places_[bad->place.index] : file_,
             bad->place.text() + ": " + bad->what);

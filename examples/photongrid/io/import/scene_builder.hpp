@@ -131,7 +131,6 @@ private:
     /// Says that z may be up, as in plans and surveys: OBJ and PLY do not tell.
     void note_flat_along_z();
     void add_environment_light();
-    void choose_settings();
 
     scene made_;
     source_place file_;
