@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""What a scene's own settings lose: their error after some seconds over that of the best settings found by a random
-search. Prints Markdown.
+"""What automatic settings lose: their error after some seconds over that of the best settings found by a random search.
+Prints Markdown.
 
-  bench/best_settings.py [--size N] [--seconds S] [--tries N] [--repeats N] [--spp N] [--half chosen|held] [SCENE...]
+  bench/best_settings.py [--size N] [--seconds S] [--tries N] [--repeats N] [--spp N] [--own] [--half chosen|held]
+                         [SCENE...]
 
 SCENE is a scene file of any format, or a scene of bench/made_scenes.py. --half: the scenes that the rules were chosen
 on, or those that were looked at once they stood. Both references of a scene, with different seeds, and their error stay
@@ -29,12 +30,14 @@ HELD = ("coffee_maker", "glass_of_water", "examples/scenes/room.gltf", "examples
         "tests/first_scenes/tumbler.glb", "tests/first_scenes/stage_spot.gltf", "tests/first_scenes/ring_gold.glb",
         "tests/first_scenes/forest.gltf")
 OUT = "out/best_settings"
+AUTOMATIC = ("--photons", "--caustic-photons", "--k", "--caustic-k", "--max-radius", "--light-samples", "--spp",
+             "--grid", "--map")
 PROGRAM = os.environ.get("PHOTONGRID", "build/photongrid")
 
 
 def drawn(command, path, size, picture, *options):
     subprocess.run([PROGRAM, command, path, "--size", f"{size}x{size}", "--quiet", "-o", picture, *map(str, options)],
-                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                   check=True, stdout=subprocess.DEVNULL)
     return read_picture(picture)[1]
 
 
@@ -67,6 +70,10 @@ class Reference:
         return max(sum(kept) / len(kept), 1e-9)
 
 
+def with_automatic(settings):
+    return settings + [word for name in AUTOMATIC if name not in settings for word in (name, "auto")]
+
+
 def drawn_at_random(chance):
     def spread(low, high):
         return round(math.exp(chance.uniform(math.log(low), math.log(high))))
@@ -88,16 +95,18 @@ def measure(scene, options):
         return reference.error(drawn("render", path, options.size, picture, "--backend", "cpu", "--seconds",
                                      options.seconds, "--seed", seed, *settings))
 
-    unset = options.unset.split()
-    default = statistics.fmean(error(unset, seed) for seed in range(1, options.repeats + 1))
+    default = statistics.fmean(error([] if options.own else with_automatic([]), seed) for seed in range(1, options.repeats + 1))
     chance, tried = random.Random(name), []
     for _ in range(options.tries):
         settings = drawn_at_random(chance)
-        tried.append((error(settings, 1), settings))
+        tried.append((error(with_automatic(settings), 1), settings))
         print(f"{name}: {tried[-1][0]:.4g} {' '.join(map(str, settings))}", file=sys.stderr, flush=True)
     tried.sort()
+    if not tried:
+        print(f"| {name} | {default:.4g} | | | |", flush=True)
+        return
     # The best of many is lucky: other seeds tell.
-    again = [(statistics.fmean(error(settings, seed) for seed in range(2, options.repeats + 2)), settings)
+    again = [(statistics.fmean(error(with_automatic(settings), seed) for seed in range(2, options.repeats + 2)), settings)
              for _, settings in tried[:5]]
     best, settings = min(again)
     # How far the error falls in time is left out: a ratio of errors is one of times, or more.
@@ -112,11 +121,11 @@ parser.add_argument("--seconds", type=float, default=4)
 parser.add_argument("--tries", type=int, default=100)
 parser.add_argument("--repeats", type=int, default=3)
 parser.add_argument("--spp", type=int, default=1024)
-parser.add_argument("--unset", default="", help="options of what is compared with the best")
+parser.add_argument("--own", action="store_true", help="compare the scene's own numbers, not automatic ones")
 parser.add_argument("--half", choices=("chosen", "held"), default="chosen")
 given = parser.parse_args()
 os.makedirs(OUT, exist_ok=True)
-print("| scene | relMSE, its own | best found | ratio | settings |")
+print("| scene | relMSE | best found | ratio | settings |")
 print("|---|---|---|---|---|")
 for scene_name in given.scenes or (CHOSEN if given.half == "chosen" else HELD):
     measure(scene_name, given)

@@ -338,7 +338,7 @@ faults=(
   "one eye ray under a rule goes through the middle|include/photongrid/render/passes.hpp|s.output.passes = s.output.passes_at_most();|"
   "an old scene is drawn with automatic numbers|examples/photongrid/io/scene_file.cpp|s = with_numbers(s, {});||scene_file"
   "what is automatic is lost when photons are named|examples/photongrid/io/scene_edit.cpp|(given ? were : unnamed)|were|scene_file"
-  "an automatic number of passes goes on|include/photongrid/render/chosen_settings.hpp|    if (s.output.passes == automatic_number) {|    if (s.output.passes == 0) {|passes"
+  "a stop rule is given a number of passes|include/photongrid/render/chosen_settings.hpp|s.output.has_stop_rule() ? 1 : |false ? 1 : |passes"
   "a missing comma is not named|examples/photongrid/io/json_tree.cpp|',' or |or |scene_file"
   "parts of no size are read|examples/photongrid/io/scene_file.cpp|least_length(part) < min_length|least_length(part) < 0 * min_length|scene_file"
   "a dark picture is called white|examples/photongrid/advice.cpp|*fitting > *set ?|*fitting < *set ?|program"

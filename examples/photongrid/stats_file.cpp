@@ -39,11 +39,11 @@ namespace {
             return nullptr;
         const auto map = [](const pilot_photons& of) {
             return json{{"spread", of.spread}, {"noise", of.noise}, {"blur2", of.blur2}, {"growth", of.growth},
-                {"segments", of.segments}};
+                {"segments", of.segments}, {"stored", of.stored}};
         };
-        return {{"spread", pilot->spread}, {"light_spread", pilot->light_spread}, {"caustic", map(pilot->maps[0])},
-            {"other", map(pilot->maps[1])}, {"of_ray", pilot->of_ray}, {"branches", pilot->branches},
-            {"lamps", pilot->lamps}};
+        return {{"spread", pilot->spread}, {"light_spread", pilot->light_spread}, {"edges", pilot->edges},
+            {"caustic", map(pilot->maps[0])}, {"other", map(pilot->maps[1])}, {"together", map(pilot->together)},
+            {"of_ray", pilot->of_ray}, {"ends", pilot->ends}, {"lamps", pilot->lamps}};
     }
 } // namespace
 
@@ -83,7 +83,7 @@ std::string stats_json(
                 {"radiance_estimate", stage_json(r.radiance_estimate)}}},
         {"estimate",
             {{"mean_count", r.estimate.mean_count}, {"mean_radius", r.estimate.mean_radius},
-                {"mean_visited", r.estimate.mean_visited}}},
+                {"mean_visited", r.estimate.mean_visited}, {"points", r.estimate.points}}},
         {"kernels", kernels}, {"peak_memory_bytes", peak_memory_bytes()}, {"peak_device_bytes", r.peak_device_bytes},
         {"compile_ms", compile_ms}, {"total_ms", total_ms}};
     return all.dump(2) + "\n";

@@ -75,8 +75,16 @@ TEST(chosen_settings, follow_the_light)
     const auto without = chosen([](auto& m) { m.maps[0] = {}; });
     EXPECT_EQ(without.map.caustic_photons, 0u) << "no caustics";
     EXPECT_GT(plain.map.caustic_photons, 0u);
+    // A map of their own for caustic photons where they need it.
+    const auto in_one_map = [](double blur2) {
+        return [=](auto& m) {
+            m.together = {.spread = 0.012, .noise = 1.2, .blur2 = blur2, .growth = 0.4, .segments = 3};
+        };
+    };
+    EXPECT_EQ(chosen(in_one_map(0.001)).map.caustic_photons, 0u);
+    EXPECT_EQ(chosen(in_one_map(0.1)).map.caustic_photons, plain.map.caustic_photons);
     // Where eye rays alone take longer, there is time for photons too.
-    EXPECT_GT(chosen([](auto& m) { m.branches = 8, m.of_ray = 5; }).map.photons, 10'000u);
+    EXPECT_GT(chosen([](auto& m) { m.ends = 8, m.of_ray = 5; }).map.photons, 10'000u);
 }
 
 /// Of all plans the best is taken: what is said of its error and cost is worse with any other number of photons.
@@ -88,7 +96,7 @@ TEST(chosen_settings, have_the_least_error_in_their_time)
         detail::pass_plan plan{{caustic, photons}, {}, static_cast<double>(best.view.light_samples)};
         const double passes = 80 * m.pixels / plan.cost(m);
         for (std::size_t k = 0; k < 2; ++k)
-            plan.shares[k] = detail::best_map(m.maps[k], plan.photons[k], passes).share;
+            plan.shares[k] = detail::best_map(m.maps[k], plan.photons[k], passes, automatic_number).share;
         return plan.error(m, passes);
     };
     const double photons = best.map.photons, caustic = best.map.caustic_photons, least = error(photons, caustic);

@@ -26,20 +26,20 @@ class pilot {
 public:
     /// It draws nothing yet. `device` must outlive it. `settings`: with a number as max_radius.
     pilot(B& device, std::shared_ptr<world<B>> of, const scene& s, const render_settings& settings)
-        : device_(device), world_(std::move(of)), view_(s.camera), settings_(settings)
+        : device_(device), world_(std::move(of)), view_(s.camera), settings_(settings),
+          may_share_(settings.map.caustic_photons == automatic_number || settings.map.caustic_photons == 0)
     {
-        double triangles = 0;
+        double shapes = std::max(static_cast<double>(count_shapes(s)) - 16, 0.0);
         for (const auto& m : s.meshes)
-            triangles += static_cast<double>(m.surface->triangles.size());
-        measures_.of_ray = 1 + 0.3 * std::log2(1 + triangles);
-        measures_.branches = std::exp2(detail::splits_of(world_->scene.layout));
+            shapes += static_cast<double>(m.surface->triangles.size());
+        measures_.of_ray = 1 + 0.3 * std::log2(1 + shapes);
         measures_.lamps = static_cast<double>(std::min<std::size_t>(count_lights(s), 16));
         auto& o = settings_.output;
         measures_.pixels = static_cast<double>(o.width) * o.height;
-        const double rays = std::max(2304 / measures_.branches, 512.0);
-        const double smaller = std::min(std::sqrt(rays / measures_.pixels), 1.0);
-        o.width = std::max(static_cast<uint>(std::round(o.width * smaller)), 1u);
-        o.height = std::max(static_cast<uint>(std::round(o.height * smaller)), 1u);
+        const double rays = std::max(2304 / std::exp2(detail::splits_of(world_->scene.layout)), 512.0);
+        smaller_ = std::min(std::sqrt(rays / measures_.pixels), 1.0);
+        for (auto* side : {&o.width, &o.height}) // even, so that there is one of half the size
+            *side = std::max(2 * static_cast<uint>(std::round(*side * smaller_ / 2)), 2u);
         o.passes = 2; // with one, eye rays would go through the middles of pixels
         o.until_error = o.seconds = 0;
         o.report_bias = bias_report::no;
@@ -59,12 +59,16 @@ public:
         switch (step_++) {
         case 0: draw_direct(); break;
         case 1: draw_map(caustic_, light_part::caustic); break;
-        case 2: draw_map(other_, light_part::indirect); measure();
+        case 2: draw_map(other_, light_part::indirect); break;
+        case 3:
+            if (caustic_.stored > 0 && may_share_)
+                draw_map(together_, light_part::all);
+            measure();
         }
-        return step_ > 2;
+        return step_ > 3;
     }
     const pilot_measures& measures() const { return measures_; }
-    double fraction() const { return step_ / 3.0; }
+    double fraction() const { return step_ / 4.0; }
 
 private:
     static constexpr uint photons = 4096;
@@ -77,7 +81,7 @@ private:
     };
     struct drawn_maps {
         std::array<drawn_from_map, 2> maps;
-        double segments = 0, stored = 0;
+        double segments = 0, stored = 0, asked = 0;
     };
 
     values drawn(const built_map<B>& from, render_settings settings, uint pass)
@@ -90,11 +94,15 @@ private:
             out.push_back(std::isfinite(mean) ? mean : 0);
         }
         counted_ = stats.photons;
+        if (stats.estimate.points > 0)
+            measures_.ends = static_cast<double>(stats.estimate.points) / static_cast<double>(out.size());
         return out;
     }
     void draw_direct()
     {
-        direct_.fill(values(std::size_t{settings_.output.width} * settings_.output.height));
+        const auto n = std::size_t{settings_.output.width} * settings_.output.height;
+        direct_.fill(values(n));
+        coarse_.fill(values(n / 4));
         if (!shows(light_part::direct))
             return;
         auto settings = settings_;
@@ -103,8 +111,12 @@ private:
         for (uint i = 0; i < 4; ++i)
             direct_[i] = drawn(empty, settings, i + 1);
         settings.view.light_samples = 4;
-        for (uint i = 0; i < 2; ++i)
-            direct_[4 + i] = drawn(empty, settings, i + 1);
+        for (uint i = 4; i < 8; ++i)
+            direct_[i] = drawn(empty, settings, i + 1);
+        settings.output.width /= 2;
+        settings.output.height /= 2;
+        for (uint i = 0; i < 4; ++i)
+            coarse_[i] = drawn(empty, settings, i + 1);
     }
     bool shows(light_part part) const
     {
@@ -114,6 +126,8 @@ private:
     {
         auto settings = settings_;
         settings.output.only = only;
+        if (only == light_part::all)
+            settings.map.caustic_photons = 0;
         if (!shows(only) || requests_of(settings, world_->scene.layout).empty())
             return;
         for (uint i = 0; i < 2; ++i) {
@@ -126,86 +140,141 @@ private:
             of.some = drawn(map, with(some), 1);
             out.segments += static_cast<double>(counted_.emitted + counted_.diffuse_hits);
             out.stored += static_cast<double>(counted_.stored);
-            of.some_else = drawn(map, with(some), 2);
+            out.asked += static_cast<double>(counted_.asked);
+            if (only != light_part::all) // its direct light varies, too
+                of.some_else = drawn(map, with(some), 2);
             of.few = drawn(map, with(few), 1);
             of.many = drawn(map, with(many), 1);
         }
     }
 
+    /// Means over 2 x 2 pixels.
+    values halved(const values& of) const
+    {
+        const std::size_t width = settings_.output.width;
+        values out;
+        for (std::size_t y = 0; y < settings_.output.height; y += 2)
+            for (std::size_t i = y * width; i < (y + 1) * width; i += 2)
+                out.push_back((of[i] + of[i + 1] + of[i + width] + of[i + width + 1]) / 4);
+        return out;
+    }
+    /// Means over 3 x 3 pixels.
+    values smoothed(const values& of) const
+    {
+        const auto& o = settings_.output;
+        values out(of.size());
+        for (uint y = 0; y < o.height; ++y)
+            for (uint x = 0; x < o.width; ++x) {
+                double sum = 0, count = 0;
+                for (uint v = y - std::min(y, 1u); v <= std::min(y + 1, o.height - 1); ++v)
+                    for (uint u = x - std::min(x, 1u); u <= std::min(x + 1, o.width - 1); ++u, ++count)
+                        sum += of[std::size_t{v} * o.width + u];
+                out[std::size_t{y} * o.width + x] = sum / count;
+            }
+        return out;
+    }
+
+    /// The mean over most of the pixels that are lit, of what is a part of the square of `light`.
+    template <class OfPixel>
+    double relative(const values& light, const OfPixel& of_pixel) const
+    {
+        values parts;
+        for (std::size_t i = 0; i < light.size(); ++i)
+            if (light[i] > 0)
+                parts.push_back(of_pixel(i) / ((light[i] + dark_) * (light[i] + dark_)));
+        if (parts.empty())
+            return 0;
+        const auto by_size = [](double x, double y) { return std::abs(x) < std::abs(y); };
+        // What a ray meets by chance does not count.
+        const auto kept
+            = static_cast<std::ptrdiff_t>(parts.size() - std::min(parts.size() / 1000 + 1, parts.size() - 1));
+        std::nth_element(parts.begin(), parts.begin() + kept - 1, parts.end(), by_size);
+        return std::accumulate(parts.begin(), parts.begin() + kept, 0.0) / static_cast<double>(kept);
+    }
+    /// The variance from the first to the second of two pairs of pictures, or of one.
+    double variance(const values& light, const values& a, const values& b) const
+    {
+        return relative(light, [&](std::size_t i) { return (a[i] - b[i]) * (a[i] - b[i]) / 2; });
+    }
+    double variance(const values& light, const values* of) const
+    {
+        return (variance(light, of[0], of[1]) + variance(light, of[2], of[3])) / 2;
+    }
+
     void measure()
     {
         const auto n = direct_[0].size();
-        const auto at = [](const values& of, std::size_t i) { return of.empty() ? 0.0 : of[i]; };
-        const auto in = [&](const drawn_maps& of, std::size_t i) {
-            return (at(of.maps[0].some, i) + at(of.maps[1].some, i)) / 2;
+        light_ = values(n);
+        const auto add = [&](const values& of, double weight) {
+            for (std::size_t i = 0; i < of.size(); ++i)
+                light_[i] += weight * of[i];
         };
-        values light(n);
-        double all = 0;
-        for (std::size_t i = 0; i < n; ++i)
-            all += light[i] = (direct_[4][i] + direct_[5][i]) / 2 + in(caustic_, i) + in(other_, i);
-        const double dark = 0.01 * all / static_cast<double>(n);
-        /// The mean over most of the pixels that are lit, of what is a part of the radiance squared.
-        const auto relative = [&](const auto& of_pixel) {
-            values parts;
-            for (std::size_t i = 0; i < n; ++i)
-                if (light[i] > 0)
-                    parts.push_back(of_pixel(i) / ((light[i] + dark) * (light[i] + dark)));
-            if (parts.empty())
-                return 0.0;
-            const auto by_size = [](double x, double y) { return std::abs(x) < std::abs(y); };
-            // What a ray meets by chance does not count.
-            const auto kept = static_cast<std::ptrdiff_t>(parts.size() - parts.size() / 100);
-            std::nth_element(parts.begin(), parts.begin() + kept - 1, parts.end(), by_size);
-            return std::accumulate(parts.begin(), parts.begin() + kept, 0.0) / static_cast<double>(kept);
-        };
-        const auto variance = [](double x, double y) { return (x - y) * (x - y) / 2; };
+        for (const auto& direct : direct_)
+            add(direct, 1.0 / static_cast<double>(direct_.size()));
+        for (const auto* drawn : {&caustic_, &other_})
+            for (const auto& map : drawn->maps)
+                add(map.some, 0.5);
+        dark_ = 0.01 * std::accumulate(light_.begin(), light_.end(), 0.0) / static_cast<double>(n);
+        light_ = smoothed(light_); // few samples of a pixel do not tell how bright it is
+
         auto& m = measures_;
-        const double one = relative([&](std::size_t i) {
-            return (variance(direct_[0][i], direct_[1][i]) + variance(direct_[2][i], direct_[3][i])) / 2;
-        });
-        const double four = relative([&](std::size_t i) { return variance(direct_[4][i], direct_[5][i]); });
-        m.light_spread = std::max((one - four) * 8 / 7, 0.0); // of four, an eighth: see pass_plan::error
+        const double one = variance(light_, &direct_[0]), four = variance(light_, &direct_[4]);
+        m.light_spread = std::max((one - four) * 4 / 3, 0.0);
         m.spread = std::max(one - m.light_spread, 0.0);
-        const drawn_maps* const drawn[] = {&caustic_, &other_};
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (drawn[k]->stored < 1)
-                continue;
-            const auto &a = drawn[k]->maps[0], &b = drawn[k]->maps[1];
-            auto& map = m.maps[k];
-            map.segments = drawn[k]->segments / drawn[k]->stored;
-            map.spread = relative([&](std::size_t i) {
-                return (variance(a.some[i], a.some_else[i]) + variance(b.some[i], b.some_else[i])) / 2;
-            });
-            map.noise = some * relative([&](std::size_t i) { return variance(a.some[i], b.some[i]); });
-            // Noise of maps that do not depend on each other drops out of products.
-            const double of_few
-                = relative([&](std::size_t i) { return (a.some[i] - a.few[i]) * (b.some[i] - b.few[i]); });
-            const double of_many
-                = relative([&](std::size_t i) { return (a.many[i] - a.some[i]) * (b.many[i] - b.some[i]); });
-            // Its standard error, if the discs of estimates do not overlap.
-            const double stored = drawn[k]->stored / 2;
-            const auto noise_of = [&](uint used) { return map.noise / used * std::sqrt(used / stored); };
-            const bool by_few = of_few > 3 * noise_of(few);
-            // Where radii are small, edges of the light decide: there blur grows as the fourth root of the share.
-            constexpr double least = 0.25, largest = 0.6;
-            map.growth = by_few && of_many > 0           ? std::clamp(std::log2(of_many / of_few) / 4, least, largest)
-                : by_few || of_many > 3 * noise_of(many) ? largest
-                                                         : least;
-            // The bias is a sum of such steps, from estimates without a radius on. Noise may hide as much as that.
-            const double steps = 1 / (1 - std::pow(4, -map.growth));
-            map.blur2 = (by_few ? of_few : std::max(of_many, noise_of(many) / 4)) * steps * steps
-                * std::pow(pilot_photons::blur_share * stored / (by_few ? some : many), 2 * map.growth);
-        }
+        const double coarse = variance(halved(light_), &coarse_[0]) - m.light_spread / 4;
+        m.edges = m.spread > 0 && coarse > 0 ? 0.5 + 0.5 * std::clamp(std::log2(coarse / m.spread), 0.0, 1.0) : 1;
+        m.spread *= std::pow(smaller_, m.edges);
+        measure_map(caustic_, m.maps[0]);
+        measure_map(other_, m.maps[1]);
+        measure_map(together_, m.together);
+        if (m.together.segments > 0)
+            m.together.spread = m.maps[0].spread + m.maps[1].spread;
+    }
+    void measure_map(const drawn_maps& drawn, pilot_photons& map) const
+    {
+        if (drawn.stored < 1)
+            return;
+        const auto &a = drawn.maps[0], &b = drawn.maps[1];
+        map.segments = drawn.segments / drawn.asked;
+        map.stored = drawn.stored / drawn.asked;
+        if (!a.some_else.empty())
+            map.spread = std::pow(smaller_, measures_.edges)
+                * (variance(light_, a.some, a.some_else) + variance(light_, b.some, b.some_else)) / 2;
+        map.noise = some * variance(light_, a.some, b.some);
+        // Noise of maps that do not depend on each other drops out of products.
+        const double of_few
+            = relative(light_, [&](std::size_t i) { return (a.some[i] - a.few[i]) * (b.some[i] - b.few[i]); });
+        const double of_many
+            = relative(light_, [&](std::size_t i) { return (a.many[i] - a.some[i]) * (b.many[i] - b.some[i]); });
+        // Its standard error, if the discs of estimates do not overlap.
+        const double stored = drawn.stored / 2;
+        const auto noise_of = [&](uint used) { return map.noise / used * std::sqrt(used / stored); };
+        const bool by_few = of_few > 3 * noise_of(few);
+        // Edges of the light decide where radii are small, smaller than here: blur grows as the fourth root of the
+        // share there, or little faster.
+        constexpr double least = 0.25, largest = 0.35;
+        map.growth = by_few && of_many > 0           ? std::clamp(std::log2(of_many / of_few) / 4, least, largest)
+            : by_few || of_many > 3 * noise_of(many) ? largest
+                                                     : least;
+        // The bias is a sum of such steps, from estimates without a radius on. Noise may hide half its standard error.
+        const double steps = 1 / (1 - std::pow(4, -map.growth));
+        map.blur2 = (by_few ? of_few : std::max(of_many, noise_of(many) / 2)) * steps * steps
+            * std::pow(pilot_photons::blur_share * stored / (by_few ? some : many), 2 * map.growth);
     }
 
     B& device_;
     std::shared_ptr<world<B>> world_;
     camera view_;
     render_settings settings_;
+    bool may_share_; ///< whether caustic photons may be in the map of the others
     int step_ = 0;
-    std::array<values, 6> direct_; ///< four with one shadow ray a lamp, two with four
-    drawn_maps caustic_, other_;
-    photon_stats counted_; ///< of the map that was drawn last
+    std::array<values, 8> direct_;          ///< four with one shadow ray a lamp, four with four
+    std::array<values, 4> coarse_;          ///< with four, of half the size
+    drawn_maps caustic_, other_, together_; ///< the last: both in one map, and direct light
+    values light_;                          ///< of the whole picture
+    double dark_ = 0;                       ///< radiance at which errors become absolute ones
+    double smaller_ = 1;                    ///< sides of the pictures, over those of the whole picture
+    photon_stats counted_;                  ///< of the map that was drawn last
     pilot_measures measures_;
 };
 
