@@ -51,29 +51,30 @@ waits measure(B& b, const scene& s, const render_settings& settings, uint repeti
         drawing.start(s, settings);
         first.push_back(ms_of([&] { first_picture(drawing); }));
         finish(drawing);
+        const auto numbers = drawing.settings(); // as the window keeps them
         auto moved = s;
         for (int step = 0; step < 8; ++step) {
             moved.camera.position.x += 0.01;
             camera.push_back(ms_of([&] {
-                drawing.start(moved, settings);
+                drawing.start(moved, numbers);
                 first_picture(drawing);
             }));
         }
         moved.camera.position.x += 0.01;
         camera_end.push_back(ms_of([&] {
-            drawing.start(moved, settings);
+            drawing.start(moved, numbers);
             finish(drawing);
         }));
         for (int step = 0; step < 4; ++step) {
             moved.rectangle_lights.at(0).corner.x += 0.01;
             light.push_back(ms_of([&] {
-                drawing.start(moved, settings);
+                drawing.start(moved, numbers);
                 first_picture(drawing);
             }));
         }
         moved.rectangle_lights.at(0).corner.x += 0.01;
         light_end.push_back(ms_of([&] {
-            drawing.start(moved, settings);
+            drawing.start(moved, numbers);
             finish(drawing);
         }));
     }

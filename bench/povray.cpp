@@ -54,7 +54,7 @@ void print_pov(const scene& s, long photons)
               << " }\n";
     for (const auto& l : s.point_lights)
         std::cout << "light_source { " << vec(l.position) << " rgb 1 }\n";
-    const auto side = static_cast<int>(std::lround(std::sqrt(std::max(1u, s.render.view.light_samples))));
+    const auto side = static_cast<int>(std::lround(std::sqrt(with_numbers(s.render, {}).view.light_samples)));
     for (const auto& l : s.rectangle_lights)
         std::cout << "light_source { " << vec(l.corner + 0.5 * (l.edge_u + l.edge_v)) << " rgb 1 area_light "
                   << vec(l.edge_u) << ", " << vec(l.edge_v) << ", " << side << ", " << side << " jitter }\n";

@@ -53,11 +53,16 @@ struct task {
     knn_settings search{};
 };
 
-/// `scene` as its settings or the paper's have it, with a quarter of the pixels. `visits`: in a pass; 0: photongrid's.
+/// `scene` by our estimate or the paper's, with the paper's numbers and a quarter of the pixels. `visits`: in a pass;
+/// 0: photongrid's.
 task task_of(const std::string& scene, bool paper, uint visits, uint divisor)
 {
     auto s = read_scene("examples/scenes/" + scene + ".json");
-    auto settings = paper ? as_paper(s) : s.render;
+    auto settings = as_paper(s);
+    if (!paper) {
+        settings = with_numbers(s.render, settings);
+        settings.estimate.max_radius = as_paper(s).estimate.max_radius;
+    }
     settings.output.width /= divisor;
     settings.output.height /= divisor;
     cpu_backend b;

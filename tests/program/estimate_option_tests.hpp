@@ -179,8 +179,9 @@ namespace {
         const std::string box = PHOTONGRID_SCENES "/cornell_box.json";
         const auto draw = [&](std::vector<std::string> more) {
             std::vector<std::string> arguments{"render", box, "--backend", "serial", "--size", "32x32", "--photons",
-                "4000", "--caustic-photons", "0", "--search", "fixed_radius", "--max-radius", "0.2", "--filter",
-                "constant", "--stats", "s.json", "-o", "a.exr"};
+                "4000", "--caustic-photons", "0", "--passes", "2", "--spp", "1", "--light-samples", "2", "--k", "10",
+                "--search", "fixed_radius", "--max-radius", "0.2", "--filter", "constant", "--stats", "s.json", "-o",
+                "a.exr"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const auto e = run(arguments);
             EXPECT_EQ(e.code, 0) << e.err;

@@ -113,7 +113,8 @@ namespace {
         }
 
         fs::path folder;
-        const std::string ring = PHOTONGRID_ONE_PASS_RING; ///< examples/scenes/ring.json in one pass of 4 eye rays
+        const std::string ring
+            = PHOTONGRID_ONE_PASS_RING; ///< examples/scenes/ring.json with numbers: one pass of 4 eye rays
         /// Small enough for every test run.
         const std::vector<std::string> small{"render", ring, "--backend", "serial", "--size", "32x24",
             "--caustic-photons", "0", "--photons", "300", "--k", "16", "--grid", "32,1,32"};

@@ -184,7 +184,7 @@ namespace {
     /// Settings for pictures of 32 x 32 pixels whose noise of direct light and edges is well below the photons'.
     render_settings settings_with_noise_of_photons_alone(const scene& s)
     {
-        auto settings = s.render;
+        auto settings = with_numbers(s.render, {});
         settings.output.width = settings.output.height = 32;
         settings.output.passes = 1;
         settings.view.spp = 32;
@@ -207,7 +207,7 @@ namespace {
         const auto known = pixels.of(exact.mean), known_error = pixels.of(exact.standard_error);
 
         auto settings = settings_with_noise_of_photons_alone(s);
-        settings.estimate.leaks = {.side = true}; // the scene itself corrects edges
+        settings.estimate.leaks = {.side = true};
         settings.estimate.edges = edge_correction::none;
         const int seeds = 8;
         std::vector<convergence_row> rows, smooth_rows, corrected_rows;

@@ -161,8 +161,13 @@ namespace {
     {
         auto s = read_scene(PHOTONGRID_SCENES "/cornell_blocks.json");
         s.render.output.width = s.render.output.height = size;
-        s.render.output.until_error = s.render.output.seconds = 0;
         s.render.map.photons = 20000;
+        s.render.estimate.k = 400;
+        s.render.estimate.max_radius = 0.15;
+        s.render.view.light_samples = 2;
+        s.render.view.spp = 1;
+        s.render.output.passes = 10;
+        s.render = with_numbers(s.render, {});
         return s;
     }
 

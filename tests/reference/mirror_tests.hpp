@@ -143,6 +143,7 @@ namespace {
         const dvec3 lamp = s.point_lights[0].position;
         s.materials[0].reflectance = dvec3(0);
         s.materials[1].reflectance = dvec3(1);
+        s.render = with_numbers(s.render, {});
         s.render.map.photon_depth = 2;
         s.render.map.photons = 200000;
         std::vector<dvec2> photons;

@@ -14,8 +14,17 @@ protected:
     void compare(const std::string& name, glm::uvec2 size)
     {
         const auto s = read_scene(std::string(PHOTONGRID_SCENES) + "/" + name + ".json");
-        auto settings = s.render;
-        settings.output.passes = 2;
+        render_settings numbers;
+        numbers.map.photons = 16000;
+        numbers.map.caustic_photons = 60000;
+        numbers.estimate.k = 100;
+        numbers.estimate.caustic_k = 40;
+        numbers.view.spp = 1;
+        numbers.view.light_samples = 2;
+        numbers.output.passes = 2;
+        auto settings = with_numbers(s.render, numbers);
+        settings.map.grid = s.paper.value().map.grid;
+        settings.estimate.max_radius = s.paper->estimate.max_radius;
         if (size.x > 0) {
             settings.output.width = size.x;
             settings.output.height = size.y;
