@@ -16,7 +16,7 @@ namespace photongrid {
 
 namespace {
     using json = nlohmann::ordered_json;
-    constexpr const char* first_line = "photongrid unfinished picture 6";
+    constexpr const char* first_line = "photongrid unfinished picture 7";
 
     /// The vectors of an unfinished pass, in the file's order.
     template <class Pass>

@@ -376,7 +376,7 @@ TEST(film, refuses_a_header_that_no_film_has)
         return bytes;
     };
     EXPECT_NO_THROW(film::from_bytes(with(0, 16384u)));
-    for (const auto& bytes : {with(0, 16385u), with(4, ~0u), with(8, 4u), with(12, 65537u), with(16, 0.0),
+    for (const auto& bytes : {with(0, 16385u), with(4, ~0u), with(8, 16u), with(12, 65537u), with(16, 0.0),
              with(16, std::nan("")), with(16, std::numeric_limits<double>::infinity())})
         EXPECT_THROW(film::from_bytes(bytes), std::invalid_argument);
     // Found to be too short before there is memory for its pixels.

@@ -95,7 +95,8 @@ template <backend B>
     const render_observer& observer = {})
 {
     rendered out{{}, built.stats};
-    film sum(settings.output.width, settings.output.height, 1, settings.output.aov, reports_bias(settings));
+    film sum(settings.output.width, settings.output.height, 1, settings.output.aov, reports_bias(settings),
+        settings.estimate.filter);
     sum.add(0, draw_pass(device, built, view, settings, out.stats, {.observer = observer}));
     auto developed = sum.picture();
     out.picture = std::move(developed.picture);

@@ -54,9 +54,10 @@ public:
     film() = default;
     /// For pictures of width x height pixels. `unit` is a typical radiance, a power of two: sums have a resolution of
     /// 2^-64 units, and pixels above 2^40 units count as infinite. `layers`: also sum the layers
-    /// (output_settings::aov). `biases`: also sum the biases of pixels (reports_bias).
-    film(std::uint32_t width, std::uint32_t height, double unit, bool layers, bool biases = false)
-        : width_(width), height_(height), unit_(unit), layers_(layers), biases_(biases)
+    /// (output_settings::aov). `biases`: also sum the biases of pixels (reports_bias), of estimates by `filter`.
+    film(std::uint32_t width, std::uint32_t height, double unit, bool layers, bool biases = false,
+        filter_kind filter = filter_kind::silverman)
+        : width_(width), height_(height), unit_(unit), layers_(layers), biases_(biases), filter_(filter)
     {
     }
 
@@ -128,7 +129,8 @@ public:
             if (size > 0)
                 out.append(static_cast<const char*>(data), size);
         };
-        const std::uint32_t head[] = {width_, height_, (layers_ ? 1u : 0u) | (biases_ ? 2u : 0u), passes()};
+        const std::uint32_t head[] = {width_, height_,
+            (layers_ ? 1u : 0u) | (biases_ ? 2u : 0u) | static_cast<std::uint32_t>(filter_) << 2, passes()};
         put(head, sizeof head);
         put(&unit_, sizeof unit_);
         for (const auto pass : passes_)
@@ -157,9 +159,9 @@ public:
         double unit = 0;
         take(head, sizeof head);
         take(&unit, sizeof unit);
-        if (head[0] > 16384 || head[1] > 16384 || head[2] > 3 || head[3] > 65536 || !(unit > 0) || std::isinf(unit))
+        if (head[0] > 16384 || head[1] > 16384 || head[2] > 15 || head[3] > 65536 || !(unit > 0) || std::isinf(unit))
             throw std::invalid_argument("film: the data are not a film's");
-        film f(head[0], head[1], unit, (head[2] & 1) != 0, (head[2] & 2) != 0);
+        film f(head[0], head[1], unit, (head[2] & 1) != 0, (head[2] & 2) != 0, static_cast<filter_kind>(head[2] >> 2));
         const std::size_t n = f.size(), layer = f.layers_ ? n : 0, biases = f.biases_ ? n : 0;
         for (std::uint32_t i = 0; i < head[3]; ++i) {
             std::uint32_t pass = 0;
@@ -241,7 +243,7 @@ public:
     double bias_of(std::size_t pixel) const
     {
         if (!bias_sums_.empty())
-            return bias_sums_[pixel].value(static_cast<double>(passes_.size())) * unit_;
+            return bias_sums_[pixel].value(static_cast<double>(passes_.size()), filter_) * unit_;
         if (!biases_ || !only_)
             return 0;
         const auto& b = only_->biases.bias[pixel];
@@ -407,6 +409,7 @@ private:
     std::uint32_t width_ = 0, height_ = 0;
     double unit_ = 1;
     bool layers_ = false, biases_ = false;
+    filter_kind filter_ = filter_kind::silverman;
     std::set<std::uint32_t> passes_;
     std::optional<pass_pixels> only_; ///< the floats of the only pass, while there is one
     std::vector<pixel_sums> sums_;

@@ -65,7 +65,8 @@ inline double typical_radiance(const scene& s, const scene_layout& layout)
 inline film film_for(const scene& s, const scene_layout& layout, const render_settings& settings)
 {
     const auto& output = settings.output;
-    return film(output.width, output.height, typical_radiance(s, layout), output.aov, reports_bias(settings));
+    return film(output.width, output.height, typical_radiance(s, layout), output.aov, reports_bias(settings),
+        settings.estimate.filter);
 }
 
 namespace detail {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <photongrid/render/exact_sum.hpp>
+#include <photongrid/render/light_step.hpp>
 
 #include <algorithm>
 #include <array>
@@ -77,10 +78,10 @@ namespace detail {
             unknown_ |= other.unknown_;
         }
 
-        /// The bias of the mean of the passes, mean of the channels, in units. Positive: the pixel is too bright. Its
-        /// own noise is taken off. Where the light steps within the discs of the estimates, it is as large as the step
-        /// can make it, and the sign tells nothing. Infinite where some pass was too bright to tell.
-        double value(double passes) const
+        /// The bias of the mean of the passes by a filter, mean of the channels, in units. Positive: the pixel is too
+        /// bright. Its own noise is taken off. Where the light steps within the discs of the estimates, it is that of a
+        /// straight step with the moments of the light. Infinite where some pass was too bright to tell.
+        double value(double passes, filter_kind filter) const
         {
             if (unknown_ != 0)
                 return std::numeric_limits<double>::infinity();
@@ -88,9 +89,9 @@ namespace detail {
             if (passes < 2)
                 return mean; // with its noise
             const double noise2 = variance_of_mean(bias_squares_, all * all, passes) / 9;
-            const double of_curve2 = std::max(mean * mean - noise2, 0.0);
-            const double of_step = step(passes);
-            return std::copysign(std::sqrt(of_curve2 + of_step * of_step), mean);
+            const auto step = step_of(passes, filter);
+            const double curve = std::max(std::abs(mean) - step.curve * static_cast<double>(bias_factor(filter)), 0.0);
+            return std::copysign(std::sqrt(std::max(curve * curve - noise2, 0.0) + step.bias * step.bias), mean);
         }
 
     private:
@@ -101,24 +102,25 @@ namespace detail {
         {
             return std::max(squares.value() / square_scale - square_of_sum / passes, 0.0) / (passes * (passes - 1));
         }
-        static double square_of(const exact_sum (&v)[3])
+        static double dot(const exact_sum (&u)[3], const exact_sum (&v)[3])
         {
             double all = 0;
-            for (const auto& c : v)
-                all += c.value() * c.value();
+            for (int c = 0; c < 3; ++c)
+                all += u[c].value() * v[c].value();
             return all;
         }
-        /// Half of the step of the light that the moments tell of; 0 if noise explains them.
-        double step(double passes) const
+        /// The step of the light that the moments tell of; 0 if noise explains them.
+        light_step step_of(double passes, filter_kind filter) const
         {
-            constexpr double pi = 3.14159265358979324;
-            const double jumps2 = square_of(jump_), noise2 = variance_of_mean(jump_squares_, jumps2, passes);
-            const double jump2 = jumps2 / (passes * passes);
-            if (!(jump2 > step_bound(passes) * noise2))
-                return 0;
-            const double by_jump = 4.5 * pi * std::sqrt(jump2 - noise2);
-            const double by_tilt = 0.75 * pi * std::sqrt(square_of(tilt_)) / passes; // of a slope of the light, too
-            return std::min(by_jump, by_tilt);
+            const double jumps2 = dot(jump_, jump_), noise2 = variance_of_mean(jump_squares_, jumps2, passes);
+            const double tilts2 = dot(tilt_, tilt_);
+            if (!(jumps2 > step_bound(passes) * noise2 * passes * passes) || !(tilts2 > 0))
+                return {};
+            auto step = step_of_ratio(dot(jump_, tilt_) / tilts2, filter);
+            const double height = std::sqrt(tilts2) / (passes * step.tilt);
+            step.curve *= height;
+            step.bias *= height;
+            return step;
         }
 
         exact_sum bias_[3], tilt_[3], jump_[3]; // rgb; xyz; xyz
