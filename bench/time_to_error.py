@@ -1,7 +1,7 @@
 # Time to error against other programs: the same scenes, the same size, two threads, one converged reference a scene.
 # Prints Markdown; curves (CSV, plots) go to out/time_to_error/. Exit status 1: a floor is missed.
 #
-#   python3 bench/time_to_error.py [--quick] [--size N] [--limit SECONDS] [--clock wall|cpu] [--ways best|all]
+#   python3 bench/time_to_error.py [--quick] [--size N] [--limit SECONDS] [--clock wall|cpu] [--ways automatic|best|all]
 #                                  [--peers cached|kept|measured|none] [--backends cpu,vulkan,gl] [--draft] [SCENE...]
 #
 #   --quick     tiny pictures, no other programs: to see that it runs
@@ -10,7 +10,8 @@
 #   --peers     cached (default): other programs' curves are measured once and kept; kept: those that are not are
 #               skipped, which is said; measured: all again; none: left out
 #   --draft     references with a sixteenth of the paths
-#   --ways      photongrid's best settings of bench/time_to_error_settings.py alone (default), or all of them
+#   --ways      photongrid with the numbers that it chooses (default), with the best of
+#               bench/time_to_error_settings.py too, or with all of them
 #
 # The other programs are executables in the folder that PHOTONGRID_PEERS names: tungsten, pbrt (pbrt-v3) and smallvcm, a
 # SmallVCM that takes its scene from a file (to_smallvcm in bench/peer_scenes.py). One that is missing is skipped, which
@@ -35,11 +36,11 @@ parser.add_argument("--limit", type=float, default=60)
 parser.add_argument("--clock", choices=("wall", "cpu"), default="wall")
 parser.add_argument("--peers", choices=("cached", "kept", "measured", "none"), default="cached")
 parser.add_argument("--backends", default="cpu,vulkan,gl")
-parser.add_argument("--ways", choices=("best", "all"), default="best")
+parser.add_argument("--ways", choices=("automatic", "best", "all"), default="automatic")
 parser.add_argument("--draft", action="store_true")
 options = parser.parse_args()
 if options.quick:
-    options.size, options.limit, options.peers, options.backends, options.ways = 24, 0.5, "none", "cpu", "best"
+    options.size, options.limit, options.peers, options.backends, options.ways = 24, 0.5, "none", "cpu", "automatic"
 names = options.scenes or (["cornell_blocks"] if options.quick else list(SCENES))
 out = "out/time_to_error"
 peers_folder = os.environ.get("PHOTONGRID_PEERS", "")
@@ -121,7 +122,7 @@ def measure(name):
     say(f"{name}: {note}")
     curves = []
     for way in photongrid_ways(name, options.ways):
-        backends = options.backends.split(",") if way == photongrid_ways(name, "best")[0] else ["cpu"]
+        backends = options.backends.split(",") if way == photongrid_ways(name, "automatic")[0] else ["cpu"]
         for backend in backends:
             ours = Photongrid(program, path, way, backend)
             try:

@@ -61,7 +61,9 @@ SCENES = {s.name: s for s in (
           own_references=True),
 )}
 
-# Options of `photongrid render`, the best first: --passes is what grows.
+# Options of `photongrid render`: --passes is what grows. Beside them numbers that the renderer chooses.
+NUMBERS = ("photons", "caustic-photons", "k", "caustic-k", "light-samples", "spp", "max-radius")
+AUTOMATIC = " ".join(f"--{name} auto" for name in (*NUMBERS, "map", "grid"))
 WAYS = {
     "cornell_blocks": [
         "--spp 1 --k 200 --photons 65000 --light-samples 2",
@@ -119,7 +121,7 @@ WAYS = {
 
 
 def photongrid_ways(scene, which):
-    return WAYS[scene][:1] if which == "best" else WAYS[scene]
+    return [AUTOMATIC] + {"automatic": [], "best": WAYS[scene][:1]}.get(which, WAYS[scene])
 
 
 class Photongrid:
@@ -134,12 +136,13 @@ class Photongrid:
 
     def command(self, passes, size, picture):
         words = self.settings.split()
-        if size <= 8:  # that what is subtracted has no photons in it
-            for option in ("--photons", "--caustic-photons"):
-                if option in words:
-                    at = words.index(option)
+        if size <= 8:  # that what is subtracted has neither photons nor a pilot in it
+            for name in NUMBERS:
+                if "--" + name in words:
+                    at = words.index("--" + name)
                     del words[at:at + 2]
-            words += ["--photons", "100", "--caustic-photons", "0", "--emission", "power"]
+            words += ["--photons", "100", "--caustic-photons", "0", "--k", "10", "--caustic-k", "10", "--spp", "1",
+                      "--light-samples", "1", "--max-radius", "0.1", "--emission", "power"]
         return ([self.program, "render", self.path, "--backend", self.backend, "--size", f"{size}x{size}", "--quiet",
                  "--passes", str(passes), *words, "-o", picture], {"NODEVICE_SELECT": "1"})
 

@@ -105,6 +105,26 @@ namespace {
         EXPECT_GT(thread.report().maps, maps);
     }
 
+    TEST_F(drawn, automatic_settings_stay_until_the_light_changes)
+    {
+        auto v = begun(small_cornell());
+        v.settings.estimate.k = automatic_number;
+        const auto chose = [&](bool moving) {
+            EXPECT_TRUE(whole(thread.show(v, moving)));
+            return thread.report().stats.pilot.has_value();
+        };
+        EXPECT_TRUE(chose(false));
+        v.scene.camera.position.x += 0.1;
+        EXPECT_FALSE(chose(false));
+        v.scene.rectangle_lights[0].corner.x += 0.1;
+        EXPECT_FALSE(chose(true)) << "the lamp is being moved";
+        EXPECT_TRUE(chose(false)) << "it rests";
+        v.settings.map.photons += 1;
+        EXPECT_TRUE(chose(false));
+        v.settings.estimate.k = 20;
+        EXPECT_FALSE(chose(false));
+    }
+
     /// A change waits for the rest of one step, not for the picture: at most the passes of the longest step, a sort of
     /// all photons (13 x 14 / 2 passes) or a batch of photon paths (a pass per surface, and its sums).
     TEST_F(drawn, a_change_waits_for_the_passes_of_one_step)

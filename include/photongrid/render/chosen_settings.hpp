@@ -120,7 +120,8 @@ namespace detail {
     public:
         best_plan(const pilot_measures& m, const render_settings& s) : m_(m)
         {
-            const double most = std::max(8 * m.pixels, 200'000.0), rises = std::sqrt(2.0);
+            // More would take a GB.
+            const double most = std::clamp(8 * m.pixels, 0x1p18, 0x1p21), rises = std::sqrt(2.0);
             const auto numbers = [&](const pilot_photons& of, std::uint32_t given) {
                 return of.segments > 0 ? numbers_from(given, 64, most, rises) : std::vector<double>{0};
             };

@@ -191,14 +191,15 @@ private:
         std::nth_element(parts.begin(), parts.begin() + kept - 1, parts.end(), by_size);
         return std::accumulate(parts.begin(), parts.begin() + kept, 0.0) / static_cast<double>(kept);
     }
-    /// The variance from the first to the second of two pairs of pictures, or of one.
     double variance(const values& light, const values& a, const values& b) const
     {
         return relative(light, [&](std::size_t i) { return (a[i] - b[i]) * (a[i] - b[i]) / 2; });
     }
-    double variance(const values& light, const values* of) const
+    /// From a to b and from c to d.
+    double variance(const values& light, const values& a, const values& b, const values& c, const values& d) const
     {
-        return (variance(light, of[0], of[1]) + variance(light, of[2], of[3])) / 2;
+        return relative(
+            light, [&](std::size_t i) { return ((a[i] - b[i]) * (a[i] - b[i]) + (c[i] - d[i]) * (c[i] - d[i])) / 4; });
     }
 
     void measure()
@@ -218,10 +219,11 @@ private:
         light_ = smoothed(light_); // few samples of a pixel do not tell how bright it is
 
         auto& m = measures_;
-        const double one = variance(light_, &direct_[0]), four = variance(light_, &direct_[4]);
+        const auto of = [&](const values& light, const values* d) { return variance(light, d[0], d[1], d[2], d[3]); };
+        const double one = of(light_, &direct_[0]), four = of(light_, &direct_[4]);
         m.light_spread = std::max((one - four) * 4 / 3, 0.0);
         m.spread = std::max(one - m.light_spread, 0.0);
-        const double coarse = variance(halved(light_), &coarse_[0]) - m.light_spread / 4;
+        const double coarse = of(halved(light_), &coarse_[0]) - m.light_spread / 4;
         m.edges = m.spread > 0 && coarse > 0 ? 0.5 + 0.5 * std::clamp(std::log2(coarse / m.spread), 0.0, 1.0) : 1;
         m.spread *= std::pow(smaller_, m.edges);
         measure_map(caustic_, m.maps[0]);
@@ -238,8 +240,8 @@ private:
         map.segments = drawn.segments / drawn.asked;
         map.stored = drawn.stored / drawn.asked;
         if (!a.some_else.empty())
-            map.spread = std::pow(smaller_, measures_.edges)
-                * (variance(light_, a.some, a.some_else) + variance(light_, b.some, b.some_else)) / 2;
+            map.spread
+                = std::pow(smaller_, measures_.edges) * variance(light_, a.some, a.some_else, b.some, b.some_else);
         map.noise = some * variance(light_, a.some, b.some);
         // Noise of maps that do not depend on each other drops out of products.
         const double of_few
