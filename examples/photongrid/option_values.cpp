@@ -127,23 +127,23 @@ std::uint32_t parsed_setting(const std::string& option, const std::string& text,
     return parsed<std::uint32_t>(option, text, "a whole number");
 }
 namespace {
-    /// A number that is not the one that means auto.
+    /// `given`, unless it is the number that means auto.
     template <class Values, class Value>
-    Value or_auto(const std::string& option, const std::string& text, const Values& values, Value given)
+    Value checked(const std::string& option, const std::string& text, const Values& values, Value given)
     {
-        if (text != "auto" && given == values.automatic)
+        if (given == values.automatic)
             throw CLI::ValidationError(option, "\"" + text + "\" given; it is out of range");
         return given;
     }
 } // namespace
 std::uint32_t parsed_setting(const std::string& option, const std::string& text, const setting_table::whole_or_auto& r)
 {
-    return or_auto(
-        option, text, r, text == "auto" ? r.automatic : parsed<std::uint32_t>(option, text, "a whole number, or auto"));
+    return text == "auto" ? r.automatic
+                          : checked(option, text, r, parsed<std::uint32_t>(option, text, "a whole number, or auto"));
 }
 double parsed_setting(const std::string& option, const std::string& text, const setting_table::length_or_auto& r)
 {
-    return or_auto(option, text, r, text == "auto" ? r.automatic : parsed_number(option, text, "a number, or auto"));
+    return text == "auto" ? r.automatic : checked(option, text, r, parsed_number(option, text, "a number, or auto"));
 }
 double parsed_setting(const std::string& option, const std::string& text, const real_range&)
 {

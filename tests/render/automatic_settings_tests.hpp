@@ -34,7 +34,7 @@ TYPED_TEST_P(progressive, automatic_settings_become_numbers)
     drawing.step();
     EXPECT_TRUE(drawing.finished());
     EXPECT_TRUE(same_bytes(drawing.picture(), this->whole(s, numbers)));
-    EXPECT_EQ(chosen(drawing, s, s.render), numbers) << "the same scene again";
+    EXPECT_EQ(chosen_settings(drawing, s, s.render), numbers) << "the same scene again";
     EXPECT_FALSE(drawing.finished());
 }
 
@@ -57,7 +57,7 @@ TYPED_TEST_P(progressive, an_automatic_radius_needs_no_pilot)
     auto s = this->small_scene();
     s.render.estimate.max_radius = automatic_length;
     typename TestFixture::loop drawing(this->b());
-    const auto numbers = chosen(drawing, s, s.render);
+    const auto numbers = chosen_settings(drawing, s, s.render);
     EXPECT_FALSE(drawing.stats().pilot.has_value());
     const auto box = bounds_of(s);
     EXPECT_NEAR(

@@ -52,6 +52,8 @@ TEST(chosen_settings, leave_what_is_given)
     EXPECT_EQ(given([](auto& s) { s.view.spp = 3; }).view.spp, 3u);
     EXPECT_EQ(given([](auto& s) { s.view.light_samples = 5; }).view.light_samples, 5u);
     EXPECT_EQ(given([](auto& s) { s.output.passes = 2; }).output.passes, 2u);
+    EXPECT_LT(
+        given([](auto& s) { s.view.spp = 16; }).output.passes, given([](auto& s) { s.view.spp = 1; }).output.passes);
     // Whatever ends it, it is the same picture; a rule finds no limit.
     auto timed = given([](auto& s) { s.output.seconds = 1; });
     EXPECT_EQ(timed.output.passes_at_most(), output_settings::most_passes);

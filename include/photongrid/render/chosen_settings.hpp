@@ -45,9 +45,9 @@ struct pilot_measures {
 namespace detail {
     /// The numbers of a pass, and what they make of it.
     struct pass_plan {
-        std::array<double, 2> photons{}; ///< caustic photons, others (0 caustic ones: both kinds)
-        std::array<double, 2> shares{};  ///< of them, that an estimate uses
-        double light_samples = 1;
+        std::array<double, 2> photons{};    ///< caustic photons, others (0 caustic ones: both kinds)
+        std::array<double, 2> shares{};     ///< of them, that an estimate uses
+        double light_samples = 1, rays = 1; ///< rays: per pixel
 
         const pilot_photons& map(const pilot_measures& m, std::size_t i) const
         {
@@ -56,28 +56,29 @@ namespace detail {
         /// In us, about, on the two processors that the constants were fitted on.
         double cost(const pilot_measures& m) const
         {
-            double all = m.pixels * m.ends * (0.12 + 0.03 * m.lamps * light_samples) * m.of_ray;
+            const double ends = m.pixels * rays * m.ends;
+            double all = ends * (0.12 + 0.03 * m.lamps * light_samples) * m.of_ray;
             for (std::size_t i = 0; i < 2; ++i)
                 if (photons[i] > 0) {
                     const auto& of = map(m, i);
                     all += 1000 + photons[i] * (0.1 * std::sqrt(m.of_ray) * of.segments + 0.08 * of.stored)
-                        + m.pixels * m.ends * (0.45 * m.of_ray - 0.2);
+                        + ends * (0.45 * m.of_ray - 0.2);
                 }
             return all;
         }
         /// Of the picture after so many passes, as a part of the radiance squared. Radii shrink (shrinking_radii.hpp).
         double error(const pilot_measures& m, double passes) const
         {
-            const double rays = of_rays(m, passes);
-            double all = m.spread * rays + m.light_spread / light_samples * std::pow(passes, -1.25);
+            const double by_rays = of_rays(m, passes * rays);
+            double all = m.spread * by_rays + m.light_spread / light_samples * std::pow(passes * rays, -1.25);
             for (std::size_t i = 0; i < 2; ++i)
                 if (photons[i] > 0)
-                    all += map(m, i).spread * rays + error_of_map(map(m, i), shares[i], photons[i], passes);
+                    all += map(m, i).spread * by_rays + error_of_map(map(m, i), shares[i], photons[i], passes);
             return all;
         }
         /// Rays are stratified over all passes: variance falls faster than their number grows, most where an edge
         /// crosses a pixel.
-        static double of_rays(const pilot_measures& m, double passes) { return std::pow(passes, -1.2 - 0.4 * m.edges); }
+        static double of_rays(const pilot_measures& m, double n) { return std::pow(n, -1.2 - 0.4 * m.edges); }
         static double error_of_map(const pilot_photons& of, double share, double photons, double passes)
         {
             const double shrunk = std::cbrt(passes);
@@ -128,7 +129,8 @@ namespace detail {
             auto caustic_photons = numbers(m.maps[0], s.map.caustic_photons);
             const auto photons = numbers(m.maps[1].segments > 0 ? m.maps[1] : m.together, s.map.photons);
             const auto samples = numbers_from(s.view.light_samples, 1, m.lamps > 0 ? 16 : 1, 2);
-            plan = {{caustic_photons.front(), photons.front()}, {0.02, 0.02}, samples.front()};
+            const double spp = s.view.spp == automatic_number ? 1 : s.view.spp;
+            plan = {{caustic_photons.front(), photons.front()}, {0.02, 0.02}, samples.front(), spp};
             most_cost_ = std::max(time_of_pixel * m.pixels, passes_of_rays * plan.cost(m));
             if (s.map.caustic_photons == automatic_number && m.together.segments > 0)
                 caustic_photons.push_back(0);
@@ -144,7 +146,7 @@ namespace detail {
                 for (const auto& caustic : maps_of(m.maps[0], caustic_photons, s.estimate.caustic_k))
                     for (const auto& other : caustic.photons > 0 ? others : both)
                         for (const double n : samples)
-                            compare({{caustic.photons, other.photons}, {caustic.share, other.share}, n}, passes);
+                            compare({{caustic.photons, other.photons}, {caustic.share, other.share}, n, spp}, passes);
             }
         }
 
@@ -193,7 +195,7 @@ inline render_settings chosen_settings(const pilot_measures& m, const render_set
     chosen.estimate.caustic_k = whole(best.k(0));
     chosen.estimate.k = whole(best.k(1));
     chosen.view.light_samples = whole(best.plan.light_samples);
-    chosen.view.spp = 1;
+    chosen.view.spp = whole(best.plan.rays);
     chosen.output.passes = s.output.has_stop_rule() ? 1 : whole(best.passes()); // 1: no limit
     return with_numbers(s, chosen);
 }

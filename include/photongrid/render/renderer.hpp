@@ -91,7 +91,7 @@ protected:
 
 /// The settings of a picture of `s`, with numbers in place of automatic ones. It starts that picture.
 /// \throws what start() and step() throw.
-[[nodiscard]] inline render_settings chosen(renderer& device, const scene& s, const render_settings& settings)
+[[nodiscard]] inline render_settings chosen_settings(renderer& device, const scene& s, const render_settings& settings)
 {
     device.start(s, settings);
     while (is_automatic(device.settings()))

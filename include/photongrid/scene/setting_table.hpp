@@ -461,7 +461,7 @@ inline void check_numbers(const render_settings& s)
     for_each_setting([&](const auto& row) {
         if constexpr (requires { row.values.automatic; })
             detail::require(row.of(s) != row.values.automatic,
-                std::string(row.name) + ": is automatic; it must be a number here (renderer::chosen finds one)");
+                std::string(row.name) + ": is automatic; it must be a number here (chosen_settings finds one)");
     });
 }
 
