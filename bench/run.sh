@@ -223,6 +223,6 @@ if asked error; then
 fi
 if asked convergence; then
   measure "Time to error against other programs" python3 bench/time_to_error.py
-  measure "A scene's settings against a random search" python3 bench/best_settings.py
+  measure "Automatic numbers against a random search" python3 bench/best_settings.py
 fi
 exit $failed
