@@ -95,7 +95,8 @@ def measure(scene, options):
         return reference.error(drawn("render", path, options.size, picture, "--backend", "cpu", "--seconds",
                                      options.seconds, "--seed", seed, *settings))
 
-    default = statistics.fmean(error([] if options.own else with_automatic([]), seed) for seed in range(1, options.repeats + 1))
+    own = [] if options.own else with_automatic([])
+    default = statistics.fmean(error(own, seed) for seed in range(1, options.repeats + 1))
     chance, tried = random.Random(name), []
     for _ in range(options.tries):
         settings = drawn_at_random(chance)
@@ -106,8 +107,8 @@ def measure(scene, options):
         print(f"| {name} | {default:.4g} | | | |", flush=True)
         return
     # The best of many is lucky: other seeds tell.
-    again = [(statistics.fmean(error(with_automatic(settings), seed) for seed in range(2, options.repeats + 2)), settings)
-             for _, settings in tried[:5]]
+    again = [(statistics.fmean(error(with_automatic(settings), seed) for seed in range(2, options.repeats + 2)),
+              settings) for _, settings in tried[:5]]
     best, settings = min(again)
     # How far the error falls in time is left out: a ratio of errors is one of times, or more.
     print(f"| {name} | {default:.4g} | {best:.4g} | {default / best:.2f} | `{' '.join(map(str, settings))}` |",
