@@ -15,7 +15,7 @@ protected:
     {
         const auto s = read_scene(std::string(PHOTONGRID_SCENES) + "/" + name + ".json");
         render_settings numbers;
-        numbers.map.photons = 16000;
+        numbers.map.photons = 60000;
         numbers.map.caustic_photons = 60000;
         numbers.estimate.k = 100;
         numbers.estimate.caustic_k = 40;

@@ -54,6 +54,11 @@ TYPED_TEST_P(progressive, a_picture_that_its_error_ends_has_the_bytes_of_as_many
     moved.camera.position.x += 0.1;
     for (const bool previews : {true, false}) {
         drawing.start(moved, s.render, {.enabled = previews, .target_ms = 1e-6}); // so short that there are previews
+        if (const auto before = drawing.maps(); previews) {
+            while (drawing.pictures() == 0)
+                drawing.step(ms(0));
+            EXPECT_EQ(drawing.maps(), before) << "the first preview has the map that is there";
+        }
         drawing.step();
         const auto alone = render(this->b(), moved, s.render);
         EXPECT_EQ(drawing.stats().end.passes, alone.stats.end.passes);

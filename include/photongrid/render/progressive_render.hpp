@@ -397,7 +397,7 @@ private:
     bool has_map_of_unfinished_pass() const
     {
         const uint kept = maps_.source().pass;
-        return kept < settings_.output.passes && !film_.holds(kept) && maps_.serves(key_of_pass(kept));
+        return kept < settings_.output.passes_at_most() && !film_.holds(kept) && maps_.serves(key_of_pass(kept));
     }
     /// The pass of the map before passes begin: previews may have any.
     uint first_pass() const
