@@ -20,6 +20,7 @@ import sys
 
 from error_curves import read_picture
 from made_scenes import SCENES as MADE, write_scene
+from time_to_error_settings import AUTOMATIC_OPTIONS
 
 CHOSEN = ("examples/scenes/cornell_blocks.json", "examples/scenes/cornell_box.json", "examples/scenes/ring.json",
           "examples/scenes/glass_ball.json", "bench/scenes/door.json", "satin_ring", "examples/scenes/table.gltf",
@@ -30,8 +31,6 @@ HELD = ("coffee_maker", "glass_of_water", "examples/scenes/room.gltf", "examples
         "tests/first_scenes/tumbler.glb", "tests/first_scenes/stage_spot.gltf", "tests/first_scenes/ring_gold.glb",
         "tests/first_scenes/forest.gltf")
 OUT = "out/best_settings"
-AUTOMATIC = ("--photons", "--caustic-photons", "--k", "--caustic-k", "--max-radius", "--light-samples", "--spp",
-             "--grid", "--map")
 PROGRAM = os.environ.get("PHOTONGRID", "build/photongrid")
 
 
@@ -71,7 +70,7 @@ class Reference:
 
 
 def with_automatic(settings):
-    return settings + [word for name in AUTOMATIC if name not in settings for word in (name, "auto")]
+    return settings + [word for name in AUTOMATIC_OPTIONS if name not in settings for word in (name, "auto")]
 
 
 def drawn_at_random(chance):

@@ -63,7 +63,8 @@ SCENES = {s.name: s for s in (
 
 # Options of `photongrid render`: --passes is what grows. Beside them numbers that the renderer chooses.
 NUMBERS = ("photons", "caustic-photons", "k", "caustic-k", "light-samples", "spp", "max-radius")
-AUTOMATIC = " ".join(f"--{name} auto" for name in (*NUMBERS, "map", "grid"))
+AUTOMATIC_OPTIONS = tuple("--" + name for name in (*NUMBERS, "map", "grid"))
+AUTOMATIC = " ".join(f"{option} auto" for option in AUTOMATIC_OPTIONS)
 WAYS = {
     "cornell_blocks": [
         "--spp 1 --k 200 --photons 65000 --light-samples 2",

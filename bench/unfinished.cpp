@@ -58,11 +58,9 @@ struct task {
 task task_of(const std::string& scene, bool paper, uint visits, uint divisor)
 {
     auto s = read_scene("examples/scenes/" + scene + ".json");
-    auto settings = as_paper(s);
-    if (!paper) {
-        settings = with_numbers(s.render, settings);
-        settings.estimate.max_radius = as_paper(s).estimate.max_radius;
-    }
+    const auto of_paper = as_paper(s);
+    auto settings = paper ? of_paper : with_numbers(s.render, of_paper);
+    settings.estimate.max_radius = of_paper.estimate.max_radius;
     settings.output.width /= divisor;
     settings.output.height /= divisor;
     cpu_backend b;

@@ -56,17 +56,10 @@ namespace {
 
     TEST(scene_edit, keeps_automatic_what_is_automatic)
     {
-        const auto with_render = [](const std::string& render) {
-            auto lines = good;
-            lines[12] = render;
-            if (render == "}")
-                lines[11].pop_back(); // the comma
-            return text(lines);
-        };
         for (const auto* before : {"}", R"( "render": {}})", R"( "render": {"comment": "quick"}})",
                  R"( "render": {"k": 7, "spp": "auto"}})", R"( "render": {"photons": 1000, "grid": [4, 1, 4]}})",
                  R"( "render": {"photons": "auto", "passes": 3}})"}) {
-            const auto text = with_render(before);
+            const auto text = good_with(before);
             const auto s = parse_scene("s.json", text);
             EXPECT_EQ(edited_scene_text("s.json", text, s, s.render), text);
             for (const auto photons : {automatic_number, 77u})

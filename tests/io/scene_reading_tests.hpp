@@ -95,13 +95,7 @@ namespace {
 
     TEST(scene_file, leaves_settings_without_a_number_to_the_renderer)
     {
-        const auto with = [](const std::string& render) {
-            auto lines = good;
-            lines[12] = render;
-            if (render == "}")
-                lines[11].pop_back(); // the comma
-            return parse_scene("s.json", text(lines)).render;
-        };
+        const auto with = [](const std::string& render) { return parse_scene("s.json", good_with(render)).render; };
         for (const auto* none : {"}", R"( "render": {}})", R"( "render": {"photons": "auto", "max_radius": "auto"}})"})
             EXPECT_EQ(with(none), automatic_settings()) << none;
         auto expected = automatic_settings();
@@ -119,11 +113,8 @@ namespace {
         EXPECT_EQ(partly.estimate.k, automatic_number);
         EXPECT_EQ(partly.estimate.max_radius, automatic_length);
         EXPECT_EQ(partly.view.light_samples, 8u);
-        auto lines = good;
-        lines[12] = R"( "render": {"k": "auto", "photons": "many"}})";
-        EXPECT_NE(
-            refusal(text(lines)).find("expected a whole number from 1 to 134217728, or \"auto\""), std::string::npos)
-            << refusal(text(lines));
+        const auto said = refusal(good_with(R"( "render": {"k": "auto", "photons": "many"}})"));
+        EXPECT_NE(said.find("expected a whole number from 1 to 134217728, or \"auto\""), std::string::npos) << said;
     }
 
     TEST(scene_file, reads_what_kind_of_estimate_is_wanted)

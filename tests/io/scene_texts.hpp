@@ -44,6 +44,16 @@ namespace {
         return all;
     }
 
+    /// `good` with another line of its settings; "}": without settings.
+    [[maybe_unused]] std::string good_with(const std::string& render)
+    {
+        auto lines = good;
+        lines[12] = render;
+        if (render == "}")
+            lines[11].pop_back(); // the comma
+        return text(lines);
+    }
+
     /// The error of a reader, or "" if it throws none.
     template <class Read>
     std::string refusal_by(const Read& read)

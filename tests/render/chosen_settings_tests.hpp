@@ -98,7 +98,7 @@ TEST(chosen_settings, have_the_least_error_in_their_time)
         detail::pass_plan plan{{caustic, photons}, {}, static_cast<double>(best.view.light_samples)};
         const double passes = 80 * m.pixels / plan.cost(m);
         for (std::size_t k = 0; k < 2; ++k)
-            plan.shares[k] = detail::best_map(m.maps[k], plan.photons[k], passes, automatic_number).share;
+            plan.shares[k] = detail::best_share(m.maps[k], plan.photons[k], passes, automatic_number);
         return plan.error(m, passes);
     };
     const double photons = best.map.photons, caustic = best.map.caustic_photons, least = error(photons, caustic);

@@ -86,20 +86,20 @@ namespace detail {
         }
     };
 
-    /// What a map with so many photons makes of the error of a picture of so many passes, with the share that is best,
-    /// or that of `k` photons if that is not automatic.
-    struct map_plan {
-        double photons = 0, share = 0, error = 0;
-    };
-    inline map_plan best_map(const pilot_photons& of, double photons, double passes, std::uint32_t k)
+    /// The share of a map's photons with which an estimate adds least to the error of a picture of so many passes, or
+    /// that of `k` photons if that is not automatic.
+    inline double best_share(const pilot_photons& of, double photons, double passes, std::uint32_t k)
     {
-        map_plan best{photons, 0, std::numeric_limits<double>::infinity()};
         const double stored = photons * of.stored;
-        const double least = k == automatic_number ? 8.0 : k, most = k == automatic_number ? 0.03 * stored : k;
-        for (double used = least; used <= std::max(most, least); used *= 1.25) {
+        if (k != automatic_number)
+            return std::min(k / stored, 1.0);
+        double best = 0, least_error = std::numeric_limits<double>::infinity();
+        for (double used = 8; used <= std::max(0.03 * stored, 8.0); used *= 1.25) {
             const double share = std::min(used / stored, 1.0);
-            if (const double e = pass_plan::error_of_map(of, share, photons, passes); e < best.error)
-                best = {photons, share, e};
+            if (const double e = pass_plan::error_of_map(of, share, photons, passes); e < least_error) {
+                least_error = e;
+                best = share;
+            }
         }
         return best;
     }
@@ -135,18 +135,22 @@ namespace detail {
             if (s.map.caustic_photons == automatic_number && m.together.segments > 0)
                 caustic_photons.push_back(0);
             for (double passes = least_passes; passes <= 4096; passes *= rises) {
+                /// Numbers of photons, and the share of each that an estimate uses.
                 const auto maps_of = [&](const pilot_photons& of, const std::vector<double>& all, std::uint32_t k) {
-                    std::vector<map_plan> maps;
-                    for (const double n : all)
-                        maps.push_back(n > 0 && of.segments > 0 ? best_map(of, n, passes, k) : map_plan{});
+                    std::vector<std::array<double, 2>> maps;
+                    if (of.segments > 0)
+                        for (const double n : all)
+                            maps.push_back({n, n > 0 ? best_share(of, n, passes, k) : 0.0});
+                    else
+                        maps.push_back({0, 0});
                     return maps;
                 };
-                const auto others = maps_of(m.maps[1], photons, s.estimate.k);
-                const auto both = m.together.segments > 0 ? maps_of(m.together, photons, s.estimate.k) : others;
+                const auto others = maps_of(m.maps[1], photons, s.estimate.k),
+                           both = maps_of(m.together, photons, s.estimate.k);
                 for (const auto& caustic : maps_of(m.maps[0], caustic_photons, s.estimate.caustic_k))
-                    for (const auto& other : caustic.photons > 0 ? others : both)
+                    for (const auto& other : caustic[0] > 0 || m.together.segments == 0 ? others : both)
                         for (const double n : samples)
-                            compare({{caustic.photons, other.photons}, {caustic.share, other.share}, n, spp}, passes);
+                            compare({{caustic[0], other[0]}, {caustic[1], other[1]}, n, spp}, passes);
             }
         }
 

@@ -6,6 +6,7 @@
 #include <photongrid/map/surplus_kind.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -186,22 +187,20 @@ struct render_settings {
 };
 
 namespace detail {
-    /// Calls visit(member) for the numbers of `s` that may be automatic.
-    template <class Settings, class Visit>
-    void for_each_number(Settings& s, const Visit& visit)
+    /// The numbers of `s` that may be automatic.
+    template <class Settings>
+    auto numbers_of(Settings& s)
     {
-        for (auto* number : {&s.map.photons, &s.map.caustic_photons, &s.estimate.k, &s.estimate.caustic_k, &s.view.spp,
-                 &s.view.light_samples, &s.output.passes})
-            visit(*number);
+        return std::array{&s.map.photons, &s.map.caustic_photons, &s.estimate.k, &s.estimate.caustic_k, &s.view.spp,
+            &s.view.light_samples, &s.output.passes};
     }
 } // namespace detail
 
 /// Whether numbers have to be measured by a pilot.
 inline bool needs_pilot(const render_settings& s)
 {
-    bool any = false;
-    detail::for_each_number(s, [&](std::uint32_t number) { any |= number == automatic_number; });
-    return any;
+    const auto numbers = detail::numbers_of(s);
+    return std::any_of(numbers.begin(), numbers.end(), [](const auto* n) { return *n == automatic_number; });
 }
 /// Whether the renderer has to choose some of the settings.
 inline bool is_automatic(const render_settings& s)
@@ -212,7 +211,8 @@ inline bool is_automatic(const render_settings& s)
 inline render_settings automatic_settings()
 {
     render_settings s;
-    detail::for_each_number(s, [](std::uint32_t& number) { number = automatic_number; });
+    for (auto* number : detail::numbers_of(s))
+        *number = automatic_number;
     s.estimate.max_radius = automatic_length;
     s.map.grid = glm::uvec3(0);
     s.map.builder = map_builder::automatic;
@@ -221,14 +221,11 @@ inline render_settings automatic_settings()
 /// `s` with the numbers of `otherwise` in place of automatic ones.
 inline render_settings with_numbers(render_settings s, const render_settings& otherwise)
 {
-    const auto use = [](std::uint32_t& number, std::uint32_t of) { number = number == automatic_number ? of : number; };
-    use(s.map.photons, otherwise.map.photons);
-    use(s.map.caustic_photons, otherwise.map.caustic_photons);
-    use(s.estimate.k, otherwise.estimate.k);
-    use(s.estimate.caustic_k, otherwise.estimate.caustic_k);
-    use(s.view.spp, otherwise.view.spp);
-    use(s.view.light_samples, otherwise.view.light_samples);
-    use(s.output.passes, otherwise.output.passes);
+    const auto numbers = detail::numbers_of(s);
+    const auto others = detail::numbers_of(otherwise);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (*numbers[i] == automatic_number)
+            *numbers[i] = *others[i];
     return s;
 }
 

@@ -61,11 +61,13 @@ namespace pbrt_export {
                     .parameter("string filename", std::filesystem::path(files_.scene()).stem().string() + ".exr")
                     .line();
                 to_.line("PixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5");
-                const auto of = [](std::uint32_t number, std::uint64_t if_automatic) {
-                    return number == automatic_number ? if_automatic : number;
-                };
-                const auto samples = of(r.view.spp, 1) * of(r.output.passes, 64);
-                to_.word("Sampler \"halton\"").parameter("integer pixelsamples", samples).line();
+                render_settings usual;
+                usual.view.spp = 1;
+                usual.output.passes = 64;
+                const auto drawn = with_numbers(r, usual);
+                to_.word("Sampler \"halton\"")
+                    .parameter("integer pixelsamples", std::uint64_t{drawn.view.spp} * drawn.output.passes)
+                    .line();
                 to_.word("Integrator \"path\"")
                     .parameter("integer maxdepth", std::uint64_t{r.view.depth} + r.map.photon_depth)
                     .line();
