@@ -76,10 +76,12 @@ namespace {
     }
 
     /// What check() says; empty: nothing.
-    std::string refusal_of(const scene& s)
+    /// What a check says of a scene, or of settings; empty if nothing.
+    template <class T>
+    std::string refusal_of(const T& s, void (*checked)(const T&) = check)
     {
         try {
-            check(s);
+            checked(s);
             return {};
         } catch (const std::invalid_argument& e) {
             return e.what();
@@ -499,6 +501,7 @@ namespace {
                 n.in(s) = bad;
                 said += refusal_of(s) + '\n';
             }
+        said += refusal_of(automatic_settings(), check_numbers);
         std::size_t checks = 0;
         for (const auto& file :
             std::filesystem::directory_iterator(PHOTONGRID_SCENES "/../../include/photongrid/scene")) {
