@@ -23,8 +23,8 @@ from made_scenes import SCENES as MADE, write_scene
 from time_to_error_settings import AUTOMATIC_OPTIONS
 
 CHOSEN = ("examples/scenes/cornell_blocks.json", "examples/scenes/cornell_box.json", "examples/scenes/ring.json",
-          "examples/scenes/glass_ball.json", "bench/scenes/door.json", "satin_ring", "examples/scenes/table.gltf",
-          "examples/scenes/still_life.pbrt", "tests/first_scenes/chair_room.gltf",
+          "examples/scenes/glass_ball.json", "bench/scenes/door.json", "bench/scenes/house.json", "satin_ring",
+          "examples/scenes/table.gltf", "examples/scenes/still_life.pbrt", "tests/first_scenes/chair_room.gltf",
           "tests/first_scenes/bunny_sun.gltf", "tests/first_scenes/window_pane.pbrt")
 HELD = ("coffee_maker", "glass_of_water", "examples/scenes/room.gltf", "examples/scenes/pool.json",
         "examples/scenes/terrace.json", "tests/first_scenes/kitchen_point.glb", "tests/first_scenes/room_lamp.obj",

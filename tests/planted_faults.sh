@@ -339,6 +339,8 @@ faults=(
   "an old scene is drawn with automatic numbers|examples/photongrid/io/scene_file.cpp|s = with_numbers(s, {});||scene_file"
   "what is automatic is lost when photons are named|examples/photongrid/io/scene_edit.cpp|(given ? were : unnamed)|were|scene_file"
   "the bias of a step is that at the step|include/photongrid/render/pixel_bias.hpp|step_of_ratio(dot(jump_, tilt_) / tilts2, filter)|step_of_ratio(1, filter)|passes"
+  "a pilot's paths end sooner than the picture's|include/photongrid/render/pilot.hpp|light_part::all \|\| (!has_caustics && may_share_))|light_part::all)|on_cpu"
+  "estimates of few photons are chosen|include/photongrid/render/chosen_settings.hpp|least_k = 32;|least_k = 8;|passes"
   "a stop rule is given a number of passes|include/photongrid/render/chosen_settings.hpp|s.output.has_stop_rule() ? 1 : |false ? 1 : |passes"
   "a missing comma is not named|examples/photongrid/io/json_tree.cpp|',' or |or |scene_file"
   "parts of no size are read|examples/photongrid/io/scene_file.cpp|least_length(part) < min_length|least_length(part) < 0 * min_length|scene_file"

@@ -66,6 +66,29 @@ TYPED_TEST_P(progressive, an_automatic_radius_needs_no_pilot)
     EXPECT_TRUE(same_bytes(drawing.picture(), this->whole(s, numbers)));
 }
 
+TYPED_TEST_P(progressive, a_pilot_traces_the_paths_of_the_picture)
+{
+    // Most paths store no photon: what the sun brings to the ground it takes away again.
+    auto s = this->small_scene();
+    s.polygons = {{{{-9, 0, -9}, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}}, 0}};
+    s.spheres = {{{0.5, 0.4, 0.5}, 0.4, 0}};
+    s.rectangle_lights.clear();
+    s.directional_lights = {{"sun", {0.3, -1, 0.2}, dvec3(2)}};
+    s.render = automatic_settings();
+    s.render.output.width = s.render.output.height = 16;
+    s.render.output.passes = 1;
+    s.render.map.photons = 4096; // as many as the pilot's, with the same guide
+    typename TestFixture::loop drawing(this->b());
+    drawing.start(s, s.render);
+    drawing.step();
+    const auto& photons = drawing.stats().photons;
+    ASSERT_GT(photons.stored, 0u);
+    const double paths
+        = static_cast<double>(photons.emitted + photons.diffuse_hits) / static_cast<double>(photons.asked);
+    EXPECT_GT(paths, 8);
+    EXPECT_NEAR(drawing.stats().pilot->maps[1].segments, paths, 0.1 * paths);
+}
+
 TYPED_TEST_P(progressive, maps_and_views_need_numbers)
 {
     auto s = this->small_scene();

@@ -89,6 +89,13 @@ TEST(chosen_settings, follow_the_light)
     EXPECT_GT(chosen([](auto& m) { m.ends = 8, m.of_ray = 5; }).map.photons, 10'000u);
 }
 
+TEST(chosen_settings, have_no_blotches_of_few_photons_whatever_blurs)
+{
+    auto m = measures_of_a_room();
+    m.maps[1].blur2 = 10; // as where estimates of the pilot's few photons reach over all that is seen
+    EXPECT_GE(chosen_settings(m, automatic_settings()).estimate.k, 32u);
+}
+
 /// Of all plans the best is taken: what is said of its error and cost is worse with any other number of photons.
 TEST(chosen_settings, have_the_least_error_in_their_time)
 {

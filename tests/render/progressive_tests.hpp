@@ -81,7 +81,7 @@ REGISTER_TYPED_TEST_SUITE_P(progressive, ends_with_the_bytes_of_render, previews
     bands_of_rows_make_the_same_picture, bands_of_rows_are_shown_from_the_top, bands_of_rows_go_on_from_their_states,
     a_state_of_more_passes_is_refused, a_picture_that_its_error_ends_has_the_bytes_of_as_many_passes,
     a_picture_that_time_ends_has_the_bytes_of_as_many_passes, automatic_settings_become_numbers,
-    an_automatic_number_of_passes_is_drawn, an_automatic_radius_needs_no_pilot, maps_and_views_need_numbers,
-    what_cannot_be_drawn_leaves_the_picture_alone);
+    an_automatic_number_of_passes_is_drawn, an_automatic_radius_needs_no_pilot, a_pilot_traces_the_paths_of_the_picture,
+    maps_and_views_need_numbers, what_cannot_be_drawn_leaves_the_picture_alone);
 
 } // namespace photongrid::testing

@@ -197,7 +197,9 @@ inline render_settings chosen_settings(const pilot_measures& m, const render_set
     chosen.map.caustic_photons = best.plan.photons[0] > 0 ? whole(best.plan.photons[0]) : 0;
     chosen.map.photons = whole(best.plan.photons[1]);
     chosen.estimate.caustic_k = whole(best.k(0));
-    chosen.estimate.k = whole(best.k(1));
+    // Blotches of fewer photons are seen, and where few photons lie in view a pilot takes the room for their blur.
+    constexpr std::uint32_t least_k = 32;
+    chosen.estimate.k = std::max(whole(best.k(1)), least_k);
     chosen.view.light_samples = whole(best.plan.light_samples);
     chosen.view.spp = whole(best.plan.rays);
     chosen.output.passes = s.output.has_stop_rule() ? 1 : whole(best.passes()); // 1: no limit

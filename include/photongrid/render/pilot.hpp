@@ -126,7 +126,10 @@ private:
     {
         auto settings = settings_;
         settings.output.only = only;
-        if (only == light_part::all)
+        const bool has_caustics = may_have_caustics(world_->scene.layout);
+        if (only == light_part::caustic && !has_caustics)
+            return;
+        if (only == light_part::all || (!has_caustics && may_share_)) // paths go on for longer, as in the picture
             settings.map.caustic_photons = 0;
         if (!shows(only) || requests_of(settings, world_->scene.layout).empty())
             return;
