@@ -75,7 +75,6 @@ namespace {
         return all;
     }
 
-    /// What check() says; empty: nothing.
     /// What a check says of a scene, or of settings; empty if nothing.
     template <class T>
     std::string refusal_of(const T& s, void (*checked)(const T&) = check)

@@ -170,7 +170,7 @@ namespace detail {
         }
 
     private:
-        // The time is some 20 s for 512 x 512 pixels on two processors, or that of 32 passes without photons.
+        // The time is some 20 s for 512 x 512 pixels on two processors, or that of 32 passes with few photons.
         static constexpr double time_of_pixel = 80, passes_of_rays = 32, least_passes = 8, aim = 0.001;
 
         void compare(const pass_plan& other, double passes)
