@@ -46,7 +46,8 @@
     EXTERN template void detail::trace_eye_rays(B&, const device_scene<B>&, const detail::eye_view&,                   \
         const detail::ray_of_pixels&, detail::eye_hits<B>&, buffer_of<B, uint>&);                                      \
     EXTERN template void detail::direct_light(B&, const device_scene<B>&, const detail::ray_of_pixels&,                \
-        const detail::eye_hits<B>&, buffer_of<B, glm::vec4>&);                                                         \
+        const detail::eye_hits<B>&, buffer_of<B, glm::vec4>&, const buffer_of<B, glm::vec4>*);                         \
+    EXTERN template std::vector<glm::vec4> learn_sky(B&, const device_scene<B>&, const camera&, double);               \
     EXTERN template class photon_tracing<B>;                                                                           \
     EXTERN template void detail::mesh_rays<B>::find(B&, const device_scene<B>&, detail::mesh_hits<B>&) const;          \
     EXTERN template buffer_of<B, glm::vec4> covered_shares(B&, const device_scene<B>&, const buffer_of<B, glm::vec4>&, \

@@ -1,17 +1,18 @@
 // Direct light at points, without a picture.
 #pragma once
 
-#include <photongrid/trace/eye_rays.hpp>
+#include <photongrid/trace/sky_guide.hpp>
 
 #include <span>
 #include <vector>
 
 namespace photongrid::testing {
 
-/// Irradiance of the scene's lights at points with normals.
+/// Irradiance of the scene's lights at points with normals. `guided`: with the guide to the sky of its camera, if it
+/// has one.
 template <class B>
-std::vector<glm::vec4> direct_light_at(
-    B& b, const scene& s, const std::vector<dvec3>& points, const std::vector<dvec3>& normals, uint samples)
+std::vector<glm::vec4> direct_light_at(B& b, const scene& s, const std::vector<dvec3>& points,
+    const std::vector<dvec3>& normals, uint samples, bool guided = false)
 {
     const auto device = upload_scene(b, s);
     std::vector<glm::vec4> p, n;
@@ -25,7 +26,10 @@ std::vector<glm::vec4> direct_light_at(
     auto settings = s.render;
     settings.view.light_samples = samples;
     auto irradiance = b.template make<glm::vec4>(p.size());
-    detail::direct_light(b, device, {settings, 0, launch(p.size())}, hits, irradiance);
+    const auto table = guided ? learn_sky(b, device, s.camera, 1) : std::vector<glm::vec4>{};
+    const auto guide = b.upload(std::span<const glm::vec4>(table));
+    detail::direct_light(
+        b, device, {settings, 0, launch(p.size())}, hits, irradiance, table.empty() ? nullptr : &guide);
     return b.download(irradiance);
 }
 

@@ -347,8 +347,76 @@ TYPED_TEST_P(light_kinds, of_which_samples_choose_add_up)
     }
 }
 
+/// A room with a window in its ceiling, 0.5 m x 0.8 m, 2 m above the floor, and nothing but the sky outside.
+inline scene room_under_a_window()
+{
+    auto s = bare_floor();
+    const auto across = [](double x, double z, double past_x, double past_z) {
+        return polygon{{{x, 2, z}, {past_x, 2, z}, {past_x, 2, past_z}, {x, 2, past_z}}, 0};
+    };
+    s.polygons.insert(
+        s.polygons.end(), {across(-3, -3, 3, 0.2), across(-3, 1, 3, 3), across(-3, 0.2, 0.5, 1), across(1, 0.2, 3, 1)});
+    for (const auto& [x, z, past_x, past_z] :
+        {std::tuple{-3, -3, 3, -3}, {-3, 3, 3, 3}, {-3, -3, -3, 3}, {3, -3, 3, 3}})
+        s.polygons.push_back({{{x, 0, z}, {past_x, 0, past_z}, {past_x, 2, past_z}, {x, 2, z}}, 0});
+    s.environment_lights = {{"sky", "", nullptr, dvec3(1, 2, 4)}};
+    s.camera = {{0, 1.9, 0}, {0.2, 0, 0.3}, {0, 0, 1}, 100};
+    return s;
+}
+
+TYPED_TEST_P(light_kinds, the_sky_through_a_window_has_its_light_and_little_noise)
+{
+    const auto s = room_under_a_window();
+    for (const dvec3& p : {dvec3(0.75, 0, 0.6), dvec3(-0.5, 0, 0.4), dvec3(1.2, 0, -0.9)}) {
+        double known = 0;
+        constexpr int side = 400;
+        for (int i = 0; i < side * side; ++i) {
+            const dvec3 to = dvec3(0.5 + 0.5 * (i % side + 0.5) / side, 2, 0.2 + 0.8 * (i / side + 0.5) / side) - p;
+            known += to.y * to.y / std::pow(glm::length(to), 4) * 0.5 * 0.8 / (side * side);
+        }
+        constexpr std::size_t points = 16384;
+        std::array<double, 2> mean{}, variance{};
+        for (const bool guided : {false, true}) {
+            const auto light = direct_light_at(
+                this->b(), s, std::vector<dvec3>(points, p), std::vector<dvec3>(points, {0, 1, 0}), 1, guided);
+            for (const auto& e : light) {
+                EXPECT_NEAR(static_cast<double>(e.y), 2.0 * static_cast<double>(e.x), 1e-5 * static_cast<double>(e.y));
+                mean[guided] += static_cast<double>(e.x) / points;
+                variance[guided] += static_cast<double>(e.x) * static_cast<double>(e.x) / points;
+            }
+            variance[guided] -= mean[guided] * mean[guided];
+        }
+        EXPECT_NEAR(mean[1] / known, 1, 4 * std::sqrt(variance[1] / points) / known) << p.x;
+        EXPECT_LT(variance[1], 16 * known * known) << p.x;
+        EXPECT_LT(20 * variance[1], variance[0]) << p.x;
+    }
+}
+
+TYPED_TEST_P(light_kinds, only_skies_that_few_samples_reach_need_a_guide)
+{
+    auto s = room_under_a_window();
+    const auto table = [&](auto& backend) { return learn_sky(backend, upload_scene(backend, s), s.camera, 1.5); };
+    serial_backend serial;
+    const auto of_room = table(serial);
+    EXPECT_FALSE(of_room.empty());
+    if (const auto& caps = this->b().caps(); caps.exact_division && caps.exact_sqrt) {
+        EXPECT_EQ(table(this->b()), of_room);
+    }
+    s.environment_lights.clear();
+    s.point_lights = {{"bulb", {0, 1, 0}, dvec3(1)}};
+    EXPECT_TRUE(table(this->b()).empty());
+    s = room_under_a_window();
+    s.polygons.resize(1);
+    EXPECT_TRUE(table(this->b()).empty()) << "an open floor";
+    s.camera = {{0, 5, 0}, {0, 9, 0.1}, {0, 0, 1}, 60};
+    EXPECT_TRUE(table(this->b()).empty()) << "nothing is seen";
+}
+
 TYPED_TEST_P(light_kinds, equal_the_serial_backends)
 {
+    const auto room = room_under_a_window();
+    this->expect_serial(room, room.render);
+
     const auto s = all_lights();
     this->expect_serial(s, s.render);
     auto many = many_lights();
@@ -373,6 +441,7 @@ REGISTER_TYPED_TEST_SUITE_P(light_kinds, a_spotlight_has_its_intensity, a_sphere
     the_camera_sees_the_environment, photons_and_shadow_rays_agree, of_which_samples_choose_add_up,
     what_absorbs_nothing_in_a_white_environment_cannot_be_seen, rough_surfaces_in_a_white_environment_cannot_be_seen,
     rough_metal_has_the_albedo_of_its_facets, plastic_has_the_albedo_of_its_coat_and_its_base,
+    the_sky_through_a_window_has_its_light_and_little_noise, only_skies_that_few_samples_reach_need_a_guide,
     equal_the_serial_backends, account_for_every_path);
 
 } // namespace photongrid::testing

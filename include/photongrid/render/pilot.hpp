@@ -27,7 +27,8 @@ public:
     /// It draws nothing yet. `device` must outlive it. `settings`: with a number as max_radius.
     pilot(B& device, std::shared_ptr<world<B>> of, const scene& s, const render_settings& settings)
         : device_(device), world_(std::move(of)), view_(s.camera), settings_(settings),
-          may_share_(settings.map.caustic_photons == automatic_number || settings.map.caustic_photons == 0)
+          may_share_(settings.map.caustic_photons == automatic_number || settings.map.caustic_photons == 0),
+          shrinks_(has_shrinking_radii(settings))
     {
         double shapes = std::max(static_cast<double>(count_shapes(s)) - 16, 0.0);
         for (const auto& m : s.meshes)
@@ -84,10 +85,14 @@ private:
         double segments = 0, stored = 0, asked = 0;
     };
 
-    values drawn(const built_map<B>& from, render_settings settings, uint pass)
+    /// `radii`: the map in which the radii are found; null: `from`.
+    values drawn(const built_map<B>& from, render_settings settings, uint pass, const built_map<B>* radii = nullptr)
     {
         render_stats stats;
-        const auto light = draw_pass(device_, from, view_, settings_of_pass(settings, pass), stats);
+        pass_options<B> options;
+        for (std::size_t i = 0; radii != nullptr && i < radii->lights.size(); ++i)
+            options.radii.firsts.push_back({&radii->lights[i].map, settings.estimate.k});
+        const auto light = draw_pass(device_, from, view_, settings_of_pass(settings, pass), stats, options);
         values out;
         for (const auto& p : light.pixels) {
             const double mean = static_cast<double>(p.x + p.y + p.z) / 3;
@@ -126,28 +131,30 @@ private:
     {
         auto settings = settings_;
         settings.output.only = only;
-        const bool has_caustics = may_have_caustics(world_->scene.layout);
-        if (only == light_part::caustic && !has_caustics)
+        if (only == light_part::caustic && !may_have_caustics(world_->scene.layout))
             return;
-        if (only == light_part::all || (!has_caustics && may_share_)) // paths go on for longer, as in the picture
+        if (only == light_part::all)
             settings.map.caustic_photons = 0;
         if (!shows(only) || requests_of(settings, world_->scene.layout).empty())
             return;
+        const auto with = [&](uint k) {
+            settings.estimate.k = settings.estimate.caustic_k = k;
+            return settings;
+        };
+        const auto map_of = [&](uint pass) { return build_map(device_, world_, settings_of_pass(with(some), pass)); };
+        const std::array maps{map_of(1), map_of(2)};
         for (uint i = 0; i < 2; ++i) {
+            const auto draw
+                = [&](uint k, uint pass) { return drawn(maps[i], with(k), pass, shrinks_ ? &maps[1 - i] : nullptr); };
             auto& of = out.maps[i];
-            const auto with = [&](uint k) {
-                settings.estimate.k = settings.estimate.caustic_k = k;
-                return settings;
-            };
-            const auto map = build_map(device_, world_, settings_of_pass(with(some), i + 1));
-            of.some = drawn(map, with(some), 1);
+            of.some = draw(some, 1);
             out.segments += static_cast<double>(counted_.emitted + counted_.diffuse_hits);
             out.stored += static_cast<double>(counted_.stored);
             out.asked += static_cast<double>(counted_.asked);
             if (only != light_part::all) // its direct light varies, too
-                of.some_else = drawn(map, with(some), 2);
-            of.few = drawn(map, with(few), 1);
-            of.many = drawn(map, with(many), 1);
+                of.some_else = draw(some, 2);
+            of.few = draw(few, 1);
+            of.many = draw(many, 1);
         }
     }
 
@@ -272,6 +279,7 @@ private:
     camera view_;
     render_settings settings_;
     bool may_share_; ///< whether caustic photons may be in the map of the others
+    bool shrinks_;   ///< whether a map of its own gives the radii: discs then end at walls (disc_probes.hpp)
     int step_ = 0;
     std::array<values, 8> direct_;          ///< four with one shadow ray a lamp, four with four
     std::array<values, 4> coarse_;          ///< with four, of half the size

@@ -345,7 +345,10 @@ bool view_pass<B>::direct_light(uint ray)
     return over_pixels(stats_.trace_rays, [&](launch pixels) {
         if (drawn) {
             const auto with = light_settings();
-            detail::direct_light(device_, built_.scene(), {with, ray, pixels}, samples_->hits, samples_->direct);
+            const auto& o = settings_.output;
+            const auto* guide // takes too long to learn while a camera moves
+                = is_preview() ? nullptr : built_.world->sky_guide(device_, view_, 1.0 * o.width / o.height);
+            detail::direct_light(device_, built_.scene(), {with, ray, pixels}, samples_->hits, samples_->direct, guide);
         } else {
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
             device_.template run<kernels::no_light>(pixels, {}, reads(), writes(samples_->hits.emissions));
@@ -391,8 +394,10 @@ bool view_pass<B>::shade(uint ray)
     search_.reset();
     found_.clear();
     gathered_ = 0;
-    // Else what photons brought there is of this map, and paths saw caustics with radii of their own.
-    if (is_preview() && !follows_paths(settings_) && !built_.on_rough) {
+    // Else what photons brought there is of this map, paths saw caustics with radii of their own, and no guide led
+    // shadow rays to the sky.
+    if (is_preview() && !follows_paths(settings_) && !built_.on_rough
+        && !detail::number_of_environment(built_.scene().layout)) {
         (*kept_)[ray] = std::move(samples_); // the next pass may have the same pixels
         samples_.reset();
     }

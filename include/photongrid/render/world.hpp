@@ -6,9 +6,12 @@
 #include <photongrid/trace/emission_guide.hpp>
 #include <photongrid/trace/photon_request.hpp>
 #include <photongrid/trace/render_observer.hpp>
+#include <photongrid/trace/sky_guide.hpp>
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -36,6 +39,21 @@ public:
         guides_[key_of(s, request)] = std::move(guide);
     }
 
+    /// The guide to the sky for what a camera sees, in a picture of `aspect` (sky_guide.hpp); null if it needs none. It
+    /// is there until another view asks for one.
+    /// \throws backend_error.
+    const buffer_of<B, glm::vec4>* sky_guide(B& device, const camera& view, double aspect)
+    {
+        if (sky_of_ != std::pair(view, aspect)) {
+            const auto table = learn_sky(device, scene, view, aspect);
+            sky_.reset();
+            if (!table.empty())
+                sky_ = device.upload(std::span<const glm::vec4>(table));
+            sky_of_ = std::pair(view, aspect);
+        }
+        return sky_ ? &*sky_ : nullptr;
+    }
+
 private:
     /// For more photons there are more pilot paths: with the guide for others, a picture would depend on which map was
     /// built first, that of a preview or of the first radii, or that of a pass.
@@ -46,6 +64,8 @@ private:
     }
 
     std::map<key, emission_guide> guides_;
+    std::optional<std::pair<camera, double>> sky_of_; // the view that sky_ is for
+    std::optional<buffer_of<B, glm::vec4>> sky_;
 };
 
 /// Prepares a world in steps, between which it can be interrupted.

@@ -16,6 +16,7 @@
 
 #include <bit>
 #include <optional>
+#include <vector>
 
 #include <photongrid/core/exact_begin.hpp>
 
@@ -127,15 +128,17 @@ struct light_sampling {
     uint seed = 0;
     uint choice = 0;
     uint choices = 0;
+    uint sky = 0;
 };
 
 /// Points that light falls on.
 template <backend B>
 struct lit_points {
-    const buffer_of<B, glm::vec4>&points, &surfaces; ///< as shadow_ray.glsl reads them
-    uint first = 0;                                  ///< element of the first point
-    uint first_pixel = 0;                            ///< pixel of element 0
-    uint whole = 1;                                  ///< see shadow_ray.glsl
+    const buffer_of<B, glm::vec4>&points, &surfaces;    ///< as shadow_ray.glsl reads them
+    uint first = 0;                                     ///< element of the first point
+    uint first_pixel = 0;                               ///< pixel of element 0
+    uint whole = 1;                                     ///< see shadow_ray.glsl
+    const buffer_of<B, glm::vec4>* sky_guide = nullptr; ///< null: there is none
 };
 
 /// Whether each sample chooses one of many lights.
@@ -144,25 +147,29 @@ inline bool samples_choose_lights(const scene_layout& layout)
     return layout.table(kernels::LIGHT_TABLE).count > most_lights_sampled_each;
 }
 
-/// Calls add(light_sampling) for each sample of direct light at a point: `light_samples` of each light with a size, one
-/// of each other light; or, of many lights, samples that choose one.
-template <class Add>
-void for_each_light_sample(const scene_layout& layout, const render_settings& settings, uint seed, Add add)
+/// The samples of direct light at a point: `light_samples` of each light with a size, one of each other light; or, of
+/// many lights, samples that choose one. `sky`: see shadow_ray.glsl.
+inline std::vector<light_sampling> light_samples_of(
+    const scene_layout& layout, const render_settings& settings, uint seed, uint sky)
 {
+    std::vector<light_sampling> all;
     const auto lights = layout.table(kernels::LIGHT_TABLE);
     const uint samples = settings.view.light_samples;
     if (samples_choose_lights(layout)) {
         // Each sample is the only one of its light, so it may be anywhere on it.
         for (uint choice = 0; choice < samples; ++choice)
-            add({.seed = seed ^ (choice + 1) * 0x9E3779B1u, .choice = choice, .choices = samples});
-        return;
+            all.push_back(
+                {.seed = seed ^ (choice + 1) * 0x9E3779B1u, .choice = choice, .choices = samples, .sky = sky});
+        return all;
     }
     for (uint number = 0; number < lights.count; ++number) {
         const bool differ = layout.records[lights.first + lights.stride * number].w != kernels::SAMPLED_ONCE;
         const uint of_this = differ ? samples : 1u;
         for (uint sample = 0; sample < of_this; ++sample)
-            add({.strata = strata_of(of_this), .light = number, .sample_id = sample, .seed = seed});
+            all.push_back(
+                {.strata = strata_of(of_this), .light = number, .sample_id = sample, .seed = seed, .sky = sky});
     }
+    return all;
 }
 
 /// Attenuates shadow rays by the opacity of the meshes that they cross.
@@ -180,11 +187,11 @@ void attenuate(
     }
 }
 
-/// Samples direct light at some points. Calls change(directions of the shadow rays, what arrives if nothing blocks
-/// them) for each sample, and adds what then arrives, where no mesh blocks it, to `light`.
+/// Takes samples of direct light at some points. Calls change(directions of the shadow rays, what arrives if nothing
+/// blocks them) for each sample, and adds what then arrives, where no mesh blocks it, to `light`.
 template <backend B, class Change>
-void add_light_samples(B& device, const device_scene<B>& s, const ray_of_pixels& of, const lit_points<B>& lit,
-    buffer_of<B, glm::vec4>& light, Change change)
+void add_light_samples(B& device, const device_scene<B>& s, const std::vector<light_sampling>& samples,
+    const ray_of_pixels& of, const lit_points<B>& lit, buffer_of<B, glm::vec4>& light, Change change)
 {
     const launch pixels = of.pixels;
     mesh_rays<B> rays(device, pixels.elements);
@@ -195,7 +202,7 @@ void add_light_samples(B& device, const device_scene<B>& s, const ray_of_pixels&
     if (through)
         met.emplace(device, s, pixels.elements);
     const auto place = place_of(of.settings, of.ray, splits_of(s.layout));
-    for_each_light_sample(s.layout, of.settings, place.seed, [&](const light_sampling& how) {
+    for (const auto& how : samples) {
         device.template run<kernels::shadow_ray>({pixels.elements, 0u, s.layout.features},
             {.strata = how.strata,
                 .light = how.light,
@@ -207,9 +214,11 @@ void add_light_samples(B& device, const device_scene<B>& s, const ray_of_pixels&
                 .first_pixel = lit.first_pixel,
                 .choice = how.choice,
                 .choices = how.choices,
-                .whole = lit.whole},
+                .whole = lit.whole,
+                .sky = how.sky},
             reads(s.records, lit.points, lit.surfaces, s.meshes->faces, s.meshes->planes, s.meshes->vertices,
-                s.meshes->shares, s.environment->texels, s.environment->shares),
+                s.meshes->shares, s.environment->texels, s.environment->shares,
+                lit.sky_guide != nullptr ? *lit.sky_guide : s.records),
             writes(rays.origins, rays.directions, arriving));
         change(rays.directions, arriving);
         if (through)
@@ -220,7 +229,15 @@ void add_light_samples(B& device, const device_scene<B>& s, const ray_of_pixels&
         const uint features = s.layout.features & ~(through ? uint{has_meshes} : 0u);
         device.template run<kernels::add_unblocked>(
             {pixels.elements, pixels.first, features}, {.first = pixels.first}, reads(arriving, found), writes(light));
-    });
+    }
+}
+/// Takes those that the settings ask for.
+template <backend B, class Change>
+void add_light_samples(B& device, const device_scene<B>& s, const ray_of_pixels& of, const lit_points<B>& lit,
+    buffer_of<B, glm::vec4>& light, Change change)
+{
+    const uint seed = place_of(of.settings, of.ray, splits_of(s.layout)).seed, sky = lit.sky_guide != nullptr ? 1 : 0;
+    add_light_samples(device, s, light_samples_of(s.layout, of.settings, seed, sky), of, lit, light, change);
 }
 
 /// Adds direct light to the emissions of the eye rays that ended on rough surfaces.
@@ -321,10 +338,10 @@ void trace_eye_rays(B& device, const device_scene<B>& s, const eye_view& view, c
 }
 
 /// Computes the irradiance of direct light at the hits of eye rays into `light`, with a bounded number of shadow rays
-/// per pass.
+/// per pass. `sky_guide`: of these hits (sky_guide.hpp), or null.
 template <backend B>
 void direct_light(B& device, const device_scene<B>& s, const ray_of_pixels& of, const eye_hits<B>& hits,
-    buffer_of<B, glm::vec4>& light)
+    buffer_of<B, glm::vec4>& light, const buffer_of<B, glm::vec4>* sky_guide = nullptr)
 {
     const auto& [settings, ray, pixels] = of;
     device.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(light));
@@ -335,7 +352,8 @@ void direct_light(B& device, const device_scene<B>& s, const ray_of_pixels& of, 
     // of many passes is not exact.
     const bool takes_whole = settings.estimate.indirect != indirect_kind::paths && (s.layout.features & has_media) == 0;
     if ((s.layout.features & others) != 0 || samples_choose_lights(s.layout) || !takes_whole) {
-        const lit_points<B> lit{hits.points, hits.surfaces, pixels.first, hits.first_pixel, takes_whole ? 1u : 0u};
+        const lit_points<B> lit{
+            hits.points, hits.surfaces, pixels.first, hits.first_pixel, takes_whole ? 1u : 0u, sky_guide};
         add_light_samples(device, s, of, lit, light, [](const auto&, auto&) {});
         return;
     }

@@ -58,16 +58,19 @@ inline photon_request request_on_rough(const render_settings& s)
 /// The photons of a picture with settings `s`, without those of a map of caustic photons.
 inline photon_request request_of(const render_settings& s, const scene_layout& layout)
 {
-    const bool are_caustics_apart = s.map.caustic_photons > 0;
+    const bool has_caustics = may_have_caustics(layout);
+    const bool are_caustics_apart = s.map.caustic_photons > 0 && has_caustics;
     photon_request r;
     r.photons = s.map.photons;
     r.most_paths = std::clamp<std::uint64_t>(std::uint64_t{r.photons} * most_paths_per_photon, 1u << 16, 0xFFFF0000u);
-    if (s.output.only == light_part::direct || (are_caustics_apart && s.output.only == light_part::caustic)) {
+    const bool shows_none = s.output.only == light_part::direct
+        || (s.output.only == light_part::caustic && (are_caustics_apart || !has_caustics));
+    if (shows_none) {
         r.photons = 0;
     } else if (gathers(s)) {
         r.kinds |= kernels::FIRST_HITS;
     } else if (follows_paths(s)) {
-        r = request_of_caustics(are_caustics_apart || !may_have_caustics(layout) ? 0 : r.photons);
+        r = request_of_caustics(are_caustics_apart || !has_caustics ? 0 : r.photons);
     } else if (are_caustics_apart) {
         r.kinds = kernels::OTHER_PHOTONS;
         r.most_paths = std::uint64_t{r.photons} * most_paths_per_other_photon;

@@ -17,6 +17,7 @@ struct Params {
     uint choice;      // with `choices` the number of a sample, whose light is chosen (chosen_light.glsl)
     uint choices;     // 0: none is chosen
     uint whole;       // 1: parts of a rectangle that are close are taken whole, by their form factor
+    uint sky;         // 0: the environment is sampled by its light; 1: by sky_guide; 2 and more: look sky - 2 at it
 };
 PARAMS(Params)
 INPUT(0, vec4, scene)
@@ -28,6 +29,7 @@ INPUT(5, vec4, vertices)
 INPUT(6, uint, shares)
 INPUT(7, vec4, environment)        // see environment.glsl ...
 INPUT(8, uint, environment_shares) // ... and lights/environment_light.glsl
+INPUT(9, vec4, sky_guide)          // see sky_guide.glsl
 OUTPUT(0, vec4, origin)    // xyz, m; w: length, m; 0 where nothing need be searched
 OUTPUT(1, vec4, direction) // xyz: unit vector
 // rgb: irradiance if no mesh blocks the ray, below a coat if there is one, W/m^2; w: density of the direction among all
@@ -35,6 +37,8 @@ OUTPUT(1, vec4, direction) // xyz: unit vector
 OUTPUT(2, vec4, arriving)
 
 #include <photongrid/trace/lights.glsl>
+#include <photongrid/trace/sky_bins.glsl>
+#include <photongrid/trace/sky_guide.glsl>
 #include <photongrid/trace/light_sample.glsl>
 #include <photongrid/trace/chosen_light.glsl>
 #include <photongrid/trace/intersect.glsl>
@@ -76,6 +80,10 @@ ArrivingLight light_sampled(uint number, uint i, bool whole, LitPoint lit)
         a.is_rectangle = seen.area;
         return a;
     }
+    if (ENVIRONMENT_LIGHTS && kind == ENVIRONMENT_LIGHT && args.sky == 1u)
+        return guided_sky(at, sample_numbers(i), lit);
+    if (ENVIRONMENT_LIGHTS && kind == ENVIRONMENT_LIGHT && args.sky > 1u)
+        return sky_in_bin(at, sky_bin_of_look(args.sky - 2u, i), sample_numbers(i), lit);
     return arriving_light(at, sample_numbers(i), lit);
 }
 
