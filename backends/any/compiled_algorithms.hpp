@@ -61,7 +61,7 @@
     EXTERN template class gather_map_building<B>;                                                                      \
     EXTERN template void add_gather_rays(                                                                              \
         B&, const gather_sources<B>&, const detail::eye_hits<B>&, detail::gather_ray, buffer_of<B, glm::vec4>&);       \
-    EXTERN template void add_path(B&, const device_scene<B>&, const caustic_source<B>&, const detail::eye_hits<B>&,    \
+    EXTERN template void add_path(B&, const device_scene<B>&, const near_light<B>&, const detail::eye_hits<B>&,        \
         detail::gather_ray, buffer_of<B, glm::vec4>&);                                                                 \
     EXTERN template built_map<B> build_map(B&, const scene&, const render_settings&, const render_observer&);          \
     EXTERN template rendered draw(                                                                                     \

@@ -192,11 +192,12 @@ namespace detail {
     }
 } // namespace detail
 
-/// Caustic photons, and the radii of estimates among them.
+/// What is looked up at ends of gather rays that are gathered from in their turn.
 template <backend B>
-struct caustic_source {
-    const map_buffers<B>& map;
-    pass_radii<B> radii{};
+struct near_light {
+    const map_buffers<B>& caustics;                     ///< caustic photons ...
+    pass_radii<B> radii{};                              ///< ... and the radii of estimates among them
+    const buffer_of<B, glm::vec4>* sky_guide = nullptr; ///< sky_guide.hpp; null: there is none
 };
 
 /// What gather rays bring to the points where eye rays ended, of the pixels of one launch.
@@ -222,13 +223,13 @@ namespace detail {
 
     /// The irradiance of caustics at ends of gather rays.
     template <backend B>
-    knn_estimates<B> caustics_at(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
+    knn_estimates<B> caustics_at(B& device, const device_scene<B>& s, const near_light<B>& light,
         const eye_hits<B>& ends, const render_settings& settings)
     {
         estimate_sources<B> from{.scene = &s,
-            .map = &caustics.map,
-            .radii = caustics.radii.of_caustics(),
-            .share2 = caustics.radii.share2,
+            .map = &light.caustics,
+            .radii = light.radii.of_caustics(),
+            .share2 = light.radii.share2,
             .search = search_for_caustics(settings),
             .edges = edges_of_gather(settings.estimate)};
         from.search.errors = from.search.biases = false;
@@ -241,8 +242,8 @@ namespace detail {
     /// Adds direct light and caustics at the ends of gather rays that are gathered from in their turn. `of`: those
     /// rays, with settings_of them.
     template <backend B>
-    void light_gather_ends(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
-        const eye_hits<B>& ends, const gather_ray& of, gathering<B>& sum)
+    void light_gather_ends(B& device, const device_scene<B>& s, const near_light<B>& light, const eye_hits<B>& ends,
+        const gather_ray& of, gathering<B>& sum)
     {
         const std::size_t n = ends.points.size();
         auto direct = device.template make<glm::vec4>(n);
@@ -250,8 +251,8 @@ namespace detail {
         auto one_sample = settings;
         one_sample.view.light_samples = 1;
         one_sample.seed ^= (of.number + 1) * 0xC2B2AE35u; // else rays of one point would see the same point of a lamp
-        direct_light(device, s, {one_sample, of.from.ray, launch(n, 0)}, ends, direct);
-        const auto found = caustics_at(device, s, caustics, ends, settings);
+        direct_light(device, s, {one_sample, of.from.ray, launch(n, 0)}, ends, direct, light.sky_guide);
+        const auto found = caustics_at(device, s, light, ends, settings);
         device.template run<kernels::add_near_light>(n,
             {.share = 1.0f / static_cast<float>(settings.estimate.gather_rays)},
             reads(ends.points, sum.weights, direct, found.irradiance), writes(sum.gathered));
@@ -263,7 +264,7 @@ template <backend B>
 struct gather_sources {
     const device_scene<B>& scene;
     const gather_map<B>& map;
-    const map_buffers<B>& caustics;
+    near_light<B> near;
 };
 
 /// Adds the irradiance that one of settings.estimate.gather_rays, `ray`, brings to the points where eye rays ended, to
@@ -297,7 +298,7 @@ void add_gather_rays(B& device, const gather_sources<B>& from, const detail::eye
         if (is_last || detail::checked_count<kernels::is_near_end>(device, n, {}, reads(hits.points)) == 0)
             break;
         detail::light_gather_ends(
-            device, from.scene, {from.caustics}, hits, {{settings, ray.from.ray, pixels}, ray.number, ray.nth}, sum);
+            device, from.scene, from.near, hits, {{settings, ray.from.ray, pixels}, ray.number, ray.nth}, sum);
         ends.emplace(std::move(hits));
     }
     device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(sum.gathered), writes(light));

@@ -20,8 +20,8 @@ namespace photongrid {
 ///
 /// A path meets at most as many surfaces that end its rays as a photon may hit (map_settings::photon_depth).
 template <backend B>
-void add_path(B& device, const device_scene<B>& s, const caustic_source<B>& caustics,
-    const detail::eye_hits<B>& eye_ends, detail::gather_ray ray, buffer_of<B, glm::vec4>& light)
+void add_path(B& device, const device_scene<B>& s, const near_light<B>& near, const detail::eye_hits<B>& eye_ends,
+    detail::gather_ray ray, buffer_of<B, glm::vec4>& light)
 {
     constexpr uint whole_rays = 2; // that never end by chance: they bring most of the light
     const launch pixels = ray.from.pixels;
@@ -41,8 +41,7 @@ void add_path(B& device, const device_scene<B>& s, const caustic_source<B>& caus
             reads(hits.throughputs), writes(hits.points, sum.weights));
         if (detail::checked_count<kernels::is_near_end>(device, n, {}, reads(hits.points)) == 0)
             break;
-        detail::light_gather_ends(
-            device, s, caustics, hits, {{settings, ray.from.ray, pixels}, ray.number, ray.nth}, sum);
+        detail::light_gather_ends(device, s, near, hits, {{settings, ray.from.ray, pixels}, ray.number, ray.nth}, sum);
         ends.emplace(std::move(hits));
     }
     device.template run<kernels::add_light>(pixels, {.first = pixels.first}, reads(sum.gathered), writes(light));

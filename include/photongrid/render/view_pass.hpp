@@ -244,6 +244,12 @@ private:
             .search = how_.preview ? detail::search_for_preview(k, *how_.preview) : k,
             .edges = settings_.estimate.edges};
     }
+    /// The guide to the sky. Previews have none: it takes too long to learn while a camera moves.
+    const buffer_of<B, glm::vec4>* sky_guide()
+    {
+        const auto& o = settings_.output;
+        return is_preview() ? nullptr : built_.world->sky_guide(device_, view_, 1.0 * o.width / o.height);
+    }
     /// Settings with fewer shadow rays if pixels are large.
     render_settings light_settings() const
     {
@@ -345,10 +351,8 @@ bool view_pass<B>::direct_light(uint ray)
     return over_pixels(stats_.trace_rays, [&](launch pixels) {
         if (drawn) {
             const auto with = light_settings();
-            const auto& o = settings_.output;
-            const auto* guide // takes too long to learn while a camera moves
-                = is_preview() ? nullptr : built_.world->sky_guide(device_, view_, 1.0 * o.width / o.height);
-            detail::direct_light(device_, built_.scene(), {with, ray, pixels}, samples_->hits, samples_->direct, guide);
+            detail::direct_light(
+                device_, built_.scene(), {with, ray, pixels}, samples_->hits, samples_->direct, sky_guide());
         } else {
             device_.template run<kernels::zero_vectors>(pixels, {}, reads(), writes(samples_->direct));
             device_.template run<kernels::no_light>(pixels, {}, reads(), writes(samples_->hits.emissions));
@@ -367,11 +371,15 @@ bool view_pass<B>::gather(uint ray)
         return true;
     const bool all_pixels = over_pixels(stats_.trace_rays, [&](launch pixels) {
         const detail::gather_ray first{{settings_, ray, pixels}, gathered_};
-        if (follows_paths(settings_))
-            add_path(device_, built_.scene(), {built_.caustics(), radii_}, samples_->hits, first, samples_->direct);
-        else
-            add_gather_rays(
-                device_, {built_.scene(), *built_.gather, built_.caustics()}, samples_->hits, first, samples_->direct);
+        const auto* guide = sky_guide();
+        near_light<B> near{built_.caustics(), {}, guide};
+        if (follows_paths(settings_)) {
+            near.radii = radii_;
+            add_path(device_, built_.scene(), near, samples_->hits, first, samples_->direct);
+        } else {
+            const gather_sources<B> from{built_.scene(), *built_.gather, std::move(near)};
+            add_gather_rays(device_, from, samples_->hits, first, samples_->direct);
+        }
     });
     if (all_pixels)
         ++gathered_;
