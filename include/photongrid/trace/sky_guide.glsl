@@ -1,8 +1,8 @@
 // Directions in which the sky is seen from points of surfaces, as trace/sky_guide.hpp has learned them. Included by
-// kernels after trace/lights.glsl, trace/sky_bins.glsl and the INPUT sky_guide: first the nodes of a tree of cells, level
-// by level: x: the coordinate by which it splits, 0 to 2 of the position, 3 to 5 of the normal; y: where. Then of each
-// cell x: 1: its samples follow the guide; and for four bins of directions each the shares of the samples in those up to
-// them.
+// kernels after trace/lights.glsl, trace/sky_bins.glsl and the INPUT sky_guide, which has first the nodes of a tree of
+// cells, level by level: x: the coordinate by which one splits, 0 to 2 of the position, 3 to 5 of the normal; y: where.
+// Then of each cell x: 1: its samples follow the guide; and for four bins of directions each the shares of the samples
+// in those up to them.
 
 const float SKY_GUIDED = 0.75f; // share of a guided cell's samples that follow the guide
 
