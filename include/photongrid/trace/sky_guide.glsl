@@ -58,7 +58,8 @@ ArrivingLight sky_from(uint at, vec3 towards, float guided_density, float guided
     precise float density = guided_density * guided + seen.density * (1.0f - guided);
     precise vec3 weighted = seen.radiance / density;
     ArrivingLight a;
-    a.found = distant_sample(towards, share, lit);
+    // Rounding may put a direction at the edge of a bin or of a texel into one that no sample is drawn from.
+    a.found = density > 0.0f ? distant_sample(towards, share, lit) : no_light(lit);
     a.power = weighted;
     a.radiance_per_power = density;
     a.is_rectangle = false;

@@ -118,7 +118,7 @@ namespace detail {
                     b.squares += static_cast<double>(p.looks[look]) * static_cast<double>(p.looks[look]);
                     ++b.looks;
                 }
-            // Each with the bins around it, which count half as much: the edge of what is seen may be there.
+            // Each with the eight bins around it, which together count as much: the edge of what is seen may be there.
             std::vector<double> weights;
             double all = 0;
             constexpr uint side = kernels::SKY_SIDE;
