@@ -20,8 +20,7 @@ namespace photongrid {
 /// The discs to probe, and the surfaces that count.
 struct disc_probing {
     filter_kind filter;
-    float min_cosine;  ///< of normals on the same surface: leak_policy::min_cosine
-    bool clips = true; ///< discs may end at half spaces or be cut down, so that nothing behind a wall is in them
+    float min_cosine; ///< of normals on the same surface: leak_policy::min_cosine
 };
 
 /// Discs on surfaces.
@@ -75,9 +74,7 @@ namespace detail {
             finished
                 = device
                       .template run_until_done<kernels::probe_disc>({n, 0u, s.layout.features},
-                          {.filter_number = static_cast<uint>(how.filter),
-                              .clips = how.clips ? 1u : 0u,
-                              .min_cosine = how.min_cosine},
+                          {.filter_number = static_cast<uint>(how.filter), .min_cosine = how.min_cosine},
                           reads(s.records, on_meshes.places, on_meshes.normals, on_meshes.shadings, points, normals),
                           writes(rays.origins, rays.directions, discs, borders, firsts, progress),
                           s.has_meshes() ? 1u : all_passes)

@@ -15,7 +15,6 @@
 #include <photongrid/render/add_gathered.kernel.hpp>
 #include <photongrid/render/add_light.kernel.hpp>
 #include <photongrid/render/add_near_light.kernel.hpp>
-#include <photongrid/render/disc_probes.hpp>
 #include <photongrid/render/is_near_end.kernel.hpp>
 #include <photongrid/render/photon_point.kernel.hpp>
 #include <photongrid/render/picture_search.hpp>
@@ -118,16 +117,13 @@ template <backend B>
 void gather_map_building<B>::finish(knn_estimates<B> found)
 {
     search_.reset();
-    map_ = {};
     if (settings_.edges == edge_correction::polygons)
         correct_edges(device_, scene_, points_, photons_.normals, found, search_settings_.filter);
     if (probes_edges(settings_))
-        divide_by_cover(device_,
-            probe_discs(device_, scene_,
-                detail::points_with_radii(device_, points_, found.irradiance, 1, detail::max_radius2(search_settings_)),
-                photons_.normals, {search_settings_.filter, search_settings_.leaks.min_cosine, false})
-                .cover,
-            found);
+        correct_by_probes(device_, scene_, map_, search_settings_,
+            detail::points_with_radii(device_, points_, found.irradiance, 1, detail::max_radius2(search_settings_)),
+            photons_.normals, found);
+    map_ = {};
     built_.irradiance = std::move(found.irradiance);
     points_ = {};
     photons_.directions = {};

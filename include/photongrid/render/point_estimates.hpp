@@ -16,6 +16,37 @@
 
 namespace photongrid {
 
+namespace detail {
+    /// The search within the radii of points.
+    inline knn_settings search_by_radii(knn_settings k)
+    {
+        k.search = search_kind::fixed_radius;
+        k.radii_at_points = true;
+        return k;
+    }
+} // namespace detail
+
+/// Corrects what `search` found in a map at the edges of surfaces, as short rays find them. `points` (recentred, m; w:
+/// squared radius, m^2; 0 or less: no estimate) with their unit normals.
+/// \throws backend_error.
+template <backend B>
+void correct_by_probes(B& device, const device_scene<B>& s, const map_buffers<B>& map, const knn_settings& search,
+    const buffer_of<B, glm::vec4>& points, const buffer_of<B, glm::vec4>& normals, knn_estimates<B>& found)
+{
+    const auto n = points.size();
+    const auto probed = probe_discs(device, s, points, normals, {search.filter, search.leaks.min_cosine});
+    if (const detail::marked_points<B> cut(device, probed.cut); cut.count > 0) {
+        const auto [places, place_normals] = cut.gather(device, probed.points, probed.normals);
+        auto halved = detail::search_by_radii(search);
+        halved.half_spaces = true;
+        running_search<B> again(
+            device, map, places, place_normals, halved, running_estimate_kind::none, step_size::largest);
+        while (!again.advance()) {}
+        detail::take_estimates(device, glm::uvec2(static_cast<uint>(n), 1), probed.cut, cut, again.take(), found);
+    }
+    divide_by_cover(device, probed.cover, found);
+}
+
 /// What estimates at points come from. What it points to must outlive their computation.
 template <backend B>
 struct estimate_sources {
@@ -33,15 +64,7 @@ struct estimate_sources {
             && map->photons.size() > 0;
     }
     /// The search in `map`.
-    knn_settings search_in_map() const
-    {
-        auto k = search;
-        if (radii.map != nullptr) {
-            k.search = search_kind::fixed_radius;
-            k.radii_at_points = true;
-        }
-        return k;
-    }
+    knn_settings search_in_map() const { return radii.map != nullptr ? detail::search_by_radii(search) : search; }
 };
 
 /// The estimates at some points.
@@ -141,18 +164,7 @@ knn_estimates<B> point_estimates<B>::corrected_by_probes(knn_estimates<B> found)
     auto discs = device_.template make<glm::vec4>(n);
     device_.template run<kernels::lit_disc>(
         n, {}, reads(have_radii ? own_radii_ : found_radii, found.irradiance), writes(discs));
-    const auto probed = probe_discs(
-        device_, *from_.scene, discs, normals_, {from_.search.filter, from_.search.leaks.min_cosine, have_radii});
-    if (const detail::marked_points<B> cut(device_, probed.cut); cut.count > 0) {
-        const auto [places, place_normals] = cut.gather(device_, probed.points, probed.normals);
-        auto halved = from_.search_in_map();
-        halved.half_spaces = true;
-        running_search<B> again(
-            device_, *from_.map, places, place_normals, halved, running_estimate_kind::none, step_size::largest);
-        while (!again.advance()) {}
-        detail::take_estimates(device_, glm::uvec2(static_cast<uint>(n), 1), probed.cut, cut, again.take(), found);
-    }
-    divide_by_cover(device_, probed.cover, found);
+    correct_by_probes(device_, *from_.scene, *from_.map, from_.search, discs, normals_, found);
     return found;
 }
 

@@ -9,12 +9,14 @@
 //     down from beyond it: a surface there, whose photons would count? Then the disc ends at the wall's plane
 //     (half_space.glsl), and it is probed again. Where there are photons before the plane, but behind another wall,
 //     the disc is cut down to where they begin; behind a sheet, which has no far side, as if there were no wall
-//     without a wall, down from the rim: still the same surface? If not, halfway, until it is known where it ends
+//     without a wall, down from the rim, else from before the wall: still the same surface? If not, halfway, until it
+//     is known where it ends
 //
 // The share is the mean over the directions of the filter's mass up to there. They are even, and turned by a random
 // angle for each point: at straight edges and in right corners the mean has a deviation of 0.02 to 0.035 and next to no
-// bias, nor has its inverse. Where the surface is much narrower than the disc, as a table's leg, most directions miss
-// its length, so the disc is cut down to its width.
+// bias, nor has its inverse. Where the surface is much smaller than the disc, as a box in a room with few photons, the
+// disc is cut down to it, since ends are known to a share of the radius. Where it is much narrower, as a table's leg,
+// most directions miss its length, so the disc is cut down to its width.
 //
 // Distances are those through space, as a search measures them: then the part of a ball's surface within a distance is
 // as large as a disc.
@@ -25,7 +27,6 @@
 
 struct Params {
     uint filter_number; // of the estimate
-    uint clips;         // 1: the disc may end at a half space or be cut down
     float min_cosine;   // of normals on the same surface (leak_policy)
 };
 PARAMS(Params)
@@ -39,8 +40,8 @@ INPUT(4, vec4, points)      // xyz, m; w: squared radius of the disc, m^2; 0 or 
 INPUT(5, vec4, normals)
 STATE(0, vec4, origin)    // of the ray in flight; w: its length, 0: there is none
 STATE(1, vec4, direction) // xyz: unit vector; w: how far the ray along the surface had come before, m
-STATE(2, vec4, probed)    // x: share of the disc so far; w: its radius over that of `points`; y: its half space
-                          // (half_space.glsl)
+STATE(2, vec4, probed)    // x: share of the disc so far; y: its half space (half_space.glsl); z: how far the surface
+                          // goes, in radii; w: the disc's radius over that of `points`
 STATE(3, vec4, border)    // zw: bounds of where the surface ends in this direction, along the plane, over the radius;
                           // y: distance over that, of what was last found of it; at a wall the half space before it;
                           // x: 1: the wall was met at a front; after that, that its far side is in the disc
@@ -63,6 +64,7 @@ const float END = 5.0f;
 const float FINISHED = 6.0f;
 const float GLANCE = 7.0f;
 const float INSIDE = 8.0f;
+const float FOOT = 9.0f;
 
 const float DIRECTIONS = 8.0f;
 const float WHOLE = 1.0f;      // where the surface ends if it does not within the radius
@@ -70,6 +72,7 @@ const float DEPTH = 0.6f;      // to which the surface may fall, in radii
 const float ASLANT = 0.92f;    // cosine of half the angle between directions: a wall may be nearer between them
 const float LEAST = 0.0625f;   // the least share of the radius that a disc is cut down to
 const float NARROW = 0.75f;    // a surface that is no wider, in radii, in three of four directions is narrow
+const float SMALL = 0.8f;      // a surface that is nowhere farther, in radii, is small
 const float PRECISION = 0.07f; // to which the end of the surface is found, in radii
 
 bool done()
@@ -184,6 +187,7 @@ void end_direction(uint i, float far)
         rho = min(rho, plane);
     }
     precise float share = probed.x + 0.125f * mass_within(rho);
+    probed.z = max(probed.z, rho);
     if (number == 0.0f)
         firsts.x = rho;
     if (number == 1.0f)
@@ -208,13 +212,26 @@ void end_direction(uint i, float far)
         glance_along(i);
         return;
     }
-    precise float cut_down = probed.w * progress.w;
-    if (progress.z >= 3.0f && args.clips != 0u && probed.w > LEAST) {
+    bool is_narrow = progress.z >= 3.0f;
+    bool is_small = probed.z < SMALL;
+    precise float cut_down = probed.w * (is_narrow ? progress.w : 1.1f * probed.z + 0.5f * PRECISION);
+    if ((is_narrow || is_small) && probed.w > LEAST) {
         begin(i, max(cut_down, LEAST), 0.0f);
         return;
     }
     origin.w = 0.0f;
     progress.y = FINISHED;
+}
+
+// There is a wall at distance `far` in this direction, in radii: the surface ends there, unless it ends before.
+void end_at_wall(uint i, float far)
+{
+    if (far < 0.25f) { // little light is before it
+        end_direction(i, far);
+        return;
+    }
+    border = vec4(0.0f, 1.0f, far, max(far - 0.5f * PRECISION, 0.5f * far));
+    send_down(i, border.w, FOOT);
 }
 
 // The half space before a wall that has this normal, at a point in this way; 0: the wall is no wall.
@@ -236,16 +253,14 @@ void meet_leak(uint i, vec3 there)
 {
     precise vec3 way = there - vec3(points(i));
     precise float cut_down = probed.w * border.w * ASLANT;
-    if (args.clips == 0u)
-        end_direction(i, WHOLE); // as if there were no wall
-    else if (probed.y > 0.0f && is_beyond(half_space(i), way.x, way.y, way.z))
-        end_direction(i, border.z);
+    if (probed.y > 0.0f && is_beyond(half_space(i), way.x, way.y, way.z))
+        end_at_wall(i, border.z);
     else if (probed.y == 0.0f && border.y > 0.0f)
         begin(i, probed.w, border.y);
     else if (border.x > 0.0f && probed.w > LEAST)
         begin(i, max(cut_down, LEAST), 0.0f);
     else
-        end_direction(i, WHOLE);
+        end_direction(i, WHOLE); // as if there were no wall
 }
 
 // The ray along the surface has met something or nothing.
@@ -269,12 +284,12 @@ void meet_wall(uint i, bool met, Hit hit)
     HalfSpace before = half_space(i);
     if (probed.y > 0.0f && is_beyond(before, way.x + slack * before.way.x, way.y + slack * before.way.y,
             way.z + slack * before.way.z)) {
-        end_direction(i, rho); // all that follows is beyond the plane
+        end_at_wall(i, rho); // all that follows is beyond the plane
         return;
     }
     border.y = half_space_before(i, m, way, radius);
     if (GLASS && hit.material != NO_MATERIAL && is_glass(material_of(hit.material))) { // there is light behind it
-        if (args.clips != 0u && probed.y == 0.0f && border.y > 0.0f)
+        if (probed.y == 0.0f && border.y > 0.0f)
             begin(i, probed.w, border.y);
         else
             send(ray_start(hit, d), d, radius - come, come, WALL);
@@ -308,7 +323,7 @@ void kernel(uint i)
         meet_wall(i, met, hit);
     } else if (progress.y == FAR_SIDE) {
         precise float rho = (direction.w + hit.t) / radius_of(i);
-        precise float nearest = rho * (args.clips != 0u ? ASLANT : 1.0f);
+        precise float nearest = rho * ASLANT;
         bool in_disc = met && nearest < 0.98f; // not just within the rim
         bool may_be_solid = !in_disc && met && border.x > 0.0f && dot3(hit.normal, d) > 0.0f;
         border.x = in_disc ? 1.0f : 0.0f;
@@ -319,19 +334,24 @@ void kernel(uint i)
             send_down(i, border.w + 0.1f, BEYOND);
     } else if (progress.y == INSIDE) {
         if (met && dot3(hit.normal, d) > 0.0f)
-            end_direction(i, border.z); // the rest of the disc is in a solid
+            end_at_wall(i, border.z); // the rest of the disc is in a solid
         else
             send_down(i, border.w + 0.1f, BEYOND);
     } else if (progress.y == BEYOND) {
         if (met && holds_photons(i, hit, d))
             meet_leak(i, hit.position);
         else
-            end_direction(i, border.z);
+            end_at_wall(i, border.z);
     } else {
         bool holds = met && holds_photons(i, hit, d);
         if (progress.y == RIM) {
             if (holds)
                 end_direction(i, WHOLE);
+        } else if (progress.y == FOOT) {
+            if (holds)
+                end_direction(i, border.z);
+            else
+                border.z = 0.0f;
         } else if (holds) {
             precise vec3 way = hit.position - vec3(points(i));
             border.z = 0.5f * (border.z + border.w);
