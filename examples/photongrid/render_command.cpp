@@ -239,7 +239,9 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     progress_bar bar(o.quiet);
     const auto drawing = make_renderer(plan.backend);
     drawing->start(s, plan.settings,
-        {.enabled = series->enabled() || plan.settings.output.seconds > 0, .running_estimates = true});
+        {.enabled = series->enabled() || plan.settings.output.seconds > 0,
+            .running_estimates = true,
+            .only_first = !series->enabled()});
     if (!choose_settings(*drawing, bar, stop_asked)) {
         std::cerr << "photongrid: interrupted; there is no picture yet\n";
         return interrupted;

@@ -96,6 +96,16 @@ TEST(chosen_settings, have_no_blotches_of_few_photons_whatever_blurs)
     EXPECT_GE(chosen_settings(m, automatic_settings()).estimate.k, 32u);
 }
 
+TEST(chosen_settings, seek_more_photons_against_blotches_than_against_specks)
+{
+    // The same light as a caustic and as soft light.
+    auto m = measures_of_a_room();
+    m.maps[0] = m.maps[1];
+    const auto s = chosen_settings(m, automatic_settings());
+    const auto share = [](double k, double photons) { return k / photons; };
+    EXPECT_GT(share(s.estimate.k, s.map.photons), 1.3 * share(s.estimate.caustic_k, s.map.caustic_photons));
+}
+
 /// Of all plans the best is taken: what is said of its error and cost is worse with any other number of photons.
 TEST(chosen_settings, have_the_least_error_in_their_time)
 {
@@ -105,7 +115,8 @@ TEST(chosen_settings, have_the_least_error_in_their_time)
         detail::pass_plan plan{{caustic, photons}, {}, static_cast<double>(best.view.light_samples)};
         const double passes = 80 * m.pixels / plan.cost(m);
         for (std::size_t k = 0; k < 2; ++k)
-            plan.shares[k] = detail::best_share(m.maps[k], plan.photons[k], passes, automatic_number);
+            plan.shares[k] = detail::best_share(
+                m.maps[k], plan.photons[k], passes, automatic_number, k == 1 ? detail::weight_of_blotches : 1);
         return plan.error(m, passes);
     };
     const double photons = best.map.photons, caustic = best.map.caustic_photons, least = error(photons, caustic);

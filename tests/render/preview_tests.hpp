@@ -61,6 +61,24 @@ TYPED_TEST_P(progressive, ends_with_the_bytes_of_render)
     }
 }
 
+TYPED_TEST_P(progressive, one_preview_is_drawn_where_no_more_are_wanted)
+{
+    const auto s = this->small_scene();
+    const auto shown_with = [&](const preview_settings& previews) {
+        typename TestFixture::loop drawing(this->b());
+        drawing.start(s, s.render, previews);
+        return this->pictures_of(drawing);
+    };
+    for (const double target : {1e-6, 0.1}) { // from an early map, or from that of the picture
+        const auto without = shown_with({.enabled = false}),
+                   one = shown_with({.target_ms = target, .only_first = true});
+        ASSERT_EQ(one.size(), without.size() + 1) << target;
+        EXPECT_GT(shown_with({.target_ms = target}).size(), one.size()) << target;
+        EXPECT_NEAR(brightness(one.front()), brightness(one.back()), 0.15 * brightness(one.back())) << target;
+        EXPECT_TRUE(same_bytes(one.back(), without.back()));
+    }
+}
+
 TYPED_TEST_P(progressive, previews_are_as_bright_as_the_picture)
 {
     auto s = this->small_scene();

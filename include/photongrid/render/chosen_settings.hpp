@@ -86,11 +86,16 @@ namespace detail {
         }
     };
 
-    /// The share of a map's photons with which an estimate adds least to the error of a picture of so many passes, or
-    /// that of `k` photons if that is not automatic.
-    inline double best_share(const pilot_photons& of, double photons, double passes, std::uint32_t k)
+    /// By how much more the noise of soft light counts than its blur: blotches are seen, and a pilot of few photons
+    /// takes some of them for blur.
+    constexpr double weight_of_blotches = 3;
+
+    /// The share of a map's photons with which an estimate adds least to the error of a picture of so many passes,
+    /// where noise counts `weight` times, or that of `k` photons if that is not automatic.
+    inline double best_share(pilot_photons of, double photons, double passes, std::uint32_t k, double weight = 1)
     {
         const double stored = photons * of.stored;
+        of.noise *= weight;
         if (k != automatic_number)
             return std::min(k / stored, 1.0);
         double best = 0, least_error = std::numeric_limits<double>::infinity();
@@ -136,16 +141,17 @@ namespace detail {
                 caustic_photons.push_back(0);
             for (double passes = least_passes; passes <= 4096; passes *= rises) {
                 /// Numbers of photons, and the share of each that an estimate uses.
-                const auto maps_of = [&](const pilot_photons& of, const std::vector<double>& all, std::uint32_t k) {
-                    std::vector<std::array<double, 2>> maps;
-                    if (of.segments > 0)
-                        for (const double n : all)
-                            maps.push_back({n, n > 0 ? best_share(of, n, passes, k) : 0.0});
-                    else
-                        maps.push_back({0, 0});
-                    return maps;
-                };
-                const auto others = maps_of(m.maps[1], photons, s.estimate.k),
+                const auto maps_of
+                    = [&](const pilot_photons& of, const std::vector<double>& all, std::uint32_t k, double weight = 1) {
+                          std::vector<std::array<double, 2>> maps;
+                          if (of.segments > 0)
+                              for (const double n : all)
+                                  maps.push_back({n, n > 0 ? best_share(of, n, passes, k, weight) : 0.0});
+                          else
+                              maps.push_back({0, 0});
+                          return maps;
+                      };
+                const auto others = maps_of(m.maps[1], photons, s.estimate.k, weight_of_blotches),
                            both = maps_of(m.together, photons, s.estimate.k);
                 for (const auto& caustic : maps_of(m.maps[0], caustic_photons, s.estimate.caustic_k))
                     for (const auto& other : caustic[0] > 0 || m.together.segments == 0 ? others : both)

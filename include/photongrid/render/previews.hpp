@@ -27,6 +27,8 @@ struct preview_settings {
     /// Replace previews by running estimates (2.4) if the search is the paper's. On cpu the search then runs twice: by
     /// kernels to show, by SIMD for the result.
     bool running_estimates = false;
+    /// One preview alone, so that there is a picture if drawing ends early: others take their time from its passes.
+    bool only_first = false;
 };
 
 /// Measured costs; initially a guess between those of a GPU and of one CPU thread.

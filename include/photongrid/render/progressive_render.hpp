@@ -334,8 +334,10 @@ private:
             const uint photons = maps_.source().settings.map.photons;
             const bool early_shown = pictures_ > 0; // before the map with all photons there is no other picture
             p.to_do.emplace();
-            if (has_previews())
+            if (has_previews() && !(previews_.only_first && early_shown))
                 p.to_do = preview_schedule(settings_, photons, early_shown, costs_, previews_.target_ms);
+            if (previews_.only_first && !p.to_do->empty())
+                p.to_do->resize(1);
             std::reverse(p.to_do->begin(), p.to_do->end());
         }
         if (!preview_ && !p.to_do->empty()) {
