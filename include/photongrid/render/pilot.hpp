@@ -279,7 +279,7 @@ private:
     camera view_;
     render_settings settings_;
     bool may_share_; ///< whether caustic photons may be in the map of the others
-    bool shrinks_;   ///< whether a map of its own gives the radii: discs then end at walls (disc_probes.hpp)
+    bool shrinks_;   ///< whether a map of its own gives the radii
     int step_ = 0;
     std::array<values, 8> direct_;          ///< four with one shadow ray a lamp, four with four
     std::array<values, 4> coarse_;          ///< with four, of half the size
