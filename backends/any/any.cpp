@@ -44,23 +44,26 @@ namespace any {
     } // namespace
 } // namespace any
 
-renderer_options chosen(renderer_options o)
+std::vector<renderer_options> candidates(const renderer_options& o)
 {
     if (o.backend != "auto")
-        return o;
+        return {o};
+    std::vector<renderer_options> all;
+    const auto add = [&](const char* backend, const std::string& device) {
+        all.push_back(o);
+        all.back().backend = backend;
+        all.back().device = device;
+    };
     for (const auto& b : any::built_backends())
-        if (const auto device = any::hardware_of(b)) {
-            o.backend = b.name;
-            o.device = *device;
-            return o;
-        }
-    o.backend = any::find("cpu") ? "cpu" : "serial";
-    return o;
+        if (const auto device = any::hardware_of(b))
+            add(b.name, *device);
+    add(any::find("cpu") ? "cpu" : "serial", o.device);
+    return all;
 }
 
 std::unique_ptr<renderer> make_renderer(const renderer_options& asked)
 {
-    const auto o = chosen(asked);
+    const auto o = candidates(asked).front();
     std::string names = "auto";
     for (const auto& k : any::known) {
         if (o.backend == k.name) {

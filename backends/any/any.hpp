@@ -7,7 +7,9 @@
 
 #include <photongrid/render/renderer.hpp>
 
+#include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,18 +18,33 @@ namespace photongrid {
 /// The backend and its options.
 /// \headerfile backends/any/any.hpp <photongrid/backends/any/any.hpp>
 struct renderer_options {
-    std::string backend = "auto"; ///< serial, cpu, gl, gl-osmesa, vulkan; auto: see chosen()
+    std::string backend = "auto"; ///< serial, cpu, gl, gl-osmesa, vulkan; auto: see candidates()
     unsigned threads = 0;         ///< of cpu; 0: as many as the machine has
     std::string device{};         ///< of vulkan: an index or part of a name; empty: the best
     std::string shader_cache{};   ///< folder for Vulkan's compiled kernels; empty: none
     bool time_passes = false;     ///< measure passes, on vulkan, gl and gl-osmesa
 };
 
-/// `o` with "auto" replaced by a backend's name: vulkan if there is a hardware Vulkan device (discrete ones first),
-/// else cpu if it was built, else serial.
-renderer_options chosen(renderer_options o);
+/// What "auto" may stand for: vulkan if there is a hardware Vulkan device (discrete ones first), then cpu, or serial in a
+/// build without it. `o` alone if it names a backend.
+std::vector<renderer_options> candidates(const renderer_options& o);
 
-/// Creates a renderer with its backend. A renderer on OpenGL belongs to the calling thread.
+/// A backend, and how long it takes for a pass of a picture.
+/// \headerfile backends/any/any.hpp <photongrid/backends/any/any.hpp>
+struct timed_backend {
+    renderer_options options{};
+    double pass_seconds = std::numeric_limits<double>::infinity(); ///< infinity: the backend fails
+    std::string failure{};                                         ///< what it says then
+};
+
+/// Times a picture of `s` on each of the backends: the fastest first. It draws some passes with a sixteenth and with a
+/// quarter of the pixels and photons, from which it extrapolates; that takes about as long as a pass of the picture,
+/// compilation apart.
+/// \throws what renderer::start() throws for the scene and the settings.
+std::vector<timed_backend> by_speed(
+    std::span<const renderer_options> backends, const scene& s, const render_settings& settings);
+
+/// Creates a renderer with its backend, the first of candidates(). A renderer on OpenGL belongs to the calling thread.
 /// \throws backend_error if the backend was not built or cannot be opened; std::invalid_argument for an unknown
 ///         backend.
 std::unique_ptr<renderer> make_renderer(const renderer_options& o = {});

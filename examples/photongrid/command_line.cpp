@@ -156,7 +156,8 @@ namespace {
             add_settings(to, group, o);
         add_to_group(to, "Backend");
         to.add_option("--backend", o.backend,
-              "backend; auto: a hardware Vulkan device, else cpu, or serial in a build without cpu")
+              "backend; auto: the fastest for the picture of a hardware Vulkan device, if there is one, and cpu, or "
+              "serial in a build without cpu")
             ->check(CLI::IsMember({"auto", "serial", "cpu", "gl", "gl-osmesa", "vulkan"}).description(""))
             ->type_name("auto|serial|cpu|gl|gl-osmesa|vulkan");
         add_whole(to, "--threads", o.threads, "threads of the cpu backend; default: all; does not affect the picture");

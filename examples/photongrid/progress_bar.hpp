@@ -31,13 +31,21 @@ public:
         std::string more;
         if (now.passes > 0)
             more += ", passes " + std::to_string(now.passes);
-        if (std::isfinite(error))
-            more += ", error " + with_digits(error);
         if (std::isfinite(now.seconds_left))
             more += ", " + duration(now.seconds_left) + " left";
+        if (std::isfinite(error))
+            more += ", error " + with_digits(error) + foreseen(now, ": ");
         show(now.stage, std::isfinite(now.seconds_left) ? now.whole : now.fraction, more);
     }
 
+    /// ", 0.02 in about 40 s, 0.01 in about 3 min", with `begin` in place of the first comma; "" if nothing is known.
+    static std::string foreseen(const render_progress& now, const char* begin)
+    {
+        std::string text;
+        for (const auto& e : now.errors)
+            text += (text.empty() ? begin : ", ") + with_digits(e.error) + " in about " + duration(e.seconds);
+        return text;
+    }
     /// "4 s", "2 min 5 s", "3 h 20 min"
     static std::string duration(double seconds)
     {

@@ -110,19 +110,11 @@ renderer_options renderer_asked(const render_options& o)
 {
     if (o.threads.value_or(0) > 4096)
         throw std::invalid_argument("--threads " + std::to_string(*o.threads) + ": at most 4,096; 0: all");
-    auto r = chosen({.backend = o.backend,
+    return {.backend = o.backend,
         .threads = o.threads.value_or(0),
         .device = o.device,
         .shader_cache = shader_cache_folder(o),
-        .time_passes = o.time_passes});
-    if (o.backend == "auto" && !o.quiet)
-        std::cerr << "photongrid: --backend auto: " << r.backend
-                  << (r.backend == "vulkan" ? ", device " + r.device
-                                            : std::string(any::has_module("vulkan") ? " (no hardware Vulkan device"
-                                                                                    : " (vulkan is not built")
-                                 + (r.backend == "cpu" ? ")" : ", built without cpu)"))
-                  << '\n';
-    return r;
+        .time_passes = o.time_passes};
 }
 
 namespace {
@@ -143,6 +135,35 @@ namespace {
         if (!o.stats.empty())
             check_file_path(o.stats);
         return plan;
+    }
+
+    std::string named(const renderer_options& o)
+    {
+        return o.backend + (o.device.empty() ? "" : ", device " + o.device);
+    }
+    /// The fastest of the backends that "auto" may stand for. Says which, and why. A picture that is to be resumed is
+    /// not timed: it must find the same one again.
+    renderer_options fastest(const render_plan& plan, const scene& s, const render_options& o)
+    {
+        const auto all = candidates(plan.backend);
+        auto fastest = all.front();
+        if (o.backend != "auto")
+            return fastest;
+        std::string why = "with --resume";
+        if (all.size() > 1 && o.resume.empty()) {
+            why.clear();
+            const auto timed = by_speed(all, s, plan.settings);
+            fastest = timed.front().options;
+            for (const auto& t : timed)
+                why += (why.empty() ? "" : "; ") + named(t.options) + ": "
+                    + (t.failure.empty() ? progress_bar::with_digits(1000 * t.pass_seconds) + " ms a pass" : t.failure);
+        } else if (all.size() == 1) {
+            why = any::has_module("vulkan") ? "no hardware Vulkan device" : "vulkan is not built";
+            why += fastest.backend == "cpu" ? "" : ", built without cpu";
+        }
+        if (!o.quiet)
+            std::cerr << "photongrid: --backend auto: " << named(fastest) << " (" << why << ")\n";
+        return fastest;
     }
 
     series_options series_asked(const scene& s, const render_options& o, const render_settings& settings)
@@ -196,17 +217,21 @@ namespace {
         return all;
     }
 
-    /// "12 passes, error 0.019 in 95 % of the pixels; --until-error is reached"
-    std::string end_of(const end_stats& end, const output_settings& o)
+    /// "12 passes, error at most 0.019 in 95 % of the pixels; another would end after --seconds; with more passes
+    /// 0.01 in about 45 s"
+    std::string end_of(const end_stats& end, const render_settings& settings, const render_progress& now)
     {
-        const std::string passes = std::to_string(end.passes) + (end.passes == 1 ? " pass" : " passes");
-        const std::string error = std::isfinite(end.error) ? ", error at most " + progress_bar::with_digits(end.error)
-                + " in " + progress_bar::with_digits(100 * o.percentile) + " % of the pixels"
-                                                           : "";
-        return passes + error
-            + (end.by == ended_by::error          ? "; --until-error is reached"
-                    : end.by == ended_by::seconds ? "; another would end after --seconds"
-                                                  : "; there may be no more");
+        const auto& o = settings.output;
+        std::string all = std::to_string(end.passes) + (end.passes == 1 ? " pass" : " passes");
+        if (std::isfinite(end.error))
+            all += std::string(reports_bias(settings) ? ", error" : ", noise") + " at most "
+                + progress_bar::with_digits(end.error) + " in " + progress_bar::with_digits(100 * o.percentile)
+                + " % of the pixels";
+        if (o.has_stop_rule())
+            all += end.by == ended_by::error  ? "; --until-error is reached"
+                : end.by == ended_by::seconds ? "; another would end after --seconds"
+                                              : "; there may be no more";
+        return all + progress_bar::foreseen(now, "; with more passes ");
     }
 
     void print_strip(const render_options& o, const picture_series& series)
@@ -237,7 +262,7 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
 
     const auto start = std::chrono::steady_clock::now();
     progress_bar bar(o.quiet);
-    const auto drawing = make_renderer(plan.backend);
+    const auto drawing = make_renderer(fastest(plan, s, o));
     drawing->start(s, plan.settings,
         {.enabled = series->enabled() || plan.settings.output.seconds > 0,
             .running_estimates = true,
@@ -286,8 +311,8 @@ exit_code run_render(const render_options& o, const std::function<bool()>& stop_
     if (end.passes == 0)
         std::cerr << "photongrid: warning: no pass ended within " << settings.output.seconds
                   << " s; wrote the best picture so far\n";
-    else if (settings.output.has_stop_rule() && !o.quiet)
-        std::cerr << "photongrid: " << end_of(end, settings.output)
+    else if ((settings.output.has_stop_rule() || std::isfinite(end.error)) && !o.quiet)
+        std::cerr << "photongrid: " << end_of(end, settings, drawing->progress())
                   << (end.by == ended_by::passes || o.resume.empty()
                              ? ""
                              : "; a smaller error or a longer time goes on from " + o.resume)

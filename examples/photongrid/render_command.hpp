@@ -12,7 +12,7 @@ namespace photongrid {
 /// for --resume. Throws scene_error, file_error, backend_error, or render_cancelled if there is no picture yet.
 exit_code run_render(const render_options& o, const std::function<bool()>& stop_asked);
 
-/// The renderer chosen by --backend and related options; prints to stderr what `auto` chose.
+/// The backend and its options as the command line asks for them.
 renderer_options renderer_asked(const render_options& o);
 
 /// The scene's name made into a file name.

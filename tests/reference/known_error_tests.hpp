@@ -155,7 +155,7 @@ namespace {
         }
     };
 
-    std::unique_ptr<renderer> renderer_on_cpu() { return make_renderer(chosen({.backend = "cpu"})); }
+    std::unique_ptr<renderer> renderer_on_cpu() { return make_renderer({.backend = "cpu"}); }
 
     scene blocks(std::uint32_t size)
     {

@@ -358,6 +358,54 @@ TEST(picture_judge, foresees_the_end)
     EXPECT_EQ(reached.forecast(0.5, 2, 16).fraction, 1);
 }
 
+TEST(picture_judge, foresees_smaller_errors)
+{
+    output_settings o;
+    o.passes = 9;
+    noisy_picture p(2);
+    picture_judge judge(o);
+    for (int pass = 0; pass < 8; ++pass) {
+        EXPECT_TRUE(judge.foreseen_errors(2, 0).empty() || pass >= 4) << "the error is not known yet";
+        p.add_pass();
+        judge.after_pass(p.sum, 2 * (pass + 1), {});
+    }
+    const double now = picture_error(p.sum, 0.95);
+    ASSERT_EQ(judge.result().error, now);
+    EXPECT_TRUE(judge.foreseen_errors(0, 0).empty()) << "no time is known";
+    auto foreseen = judge.foreseen_errors(2, 1);
+    ASSERT_EQ(foreseen.size(), 2u);
+    double above = now;
+    for (const auto& f : foreseen) {
+        EXPECT_LT(f.error, above);
+        EXPECT_GT(f.error, 0.3 * above) << "of 1, 2 and 5 one is near";
+        const double digit = f.error / std::pow(10.0, std::floor(std::log10(f.error * (1 + 1e-9))));
+        EXPECT_LT(std::min({std::abs(digit - 1), std::abs(digit - 2), std::abs(digit - 5)}), 1e-6) << f.error;
+        EXPECT_DOUBLE_EQ(f.seconds, (f.passes - 8) * 2 - 1);
+        above = f.error;
+    }
+    // That many passes have it, whatever the most may be. The sequences of this picture are random numbers.
+    EXPECT_GT(foreseen[0].passes, 9) << "more than the picture may have";
+    for (int pass = 8; pass < foreseen[0].passes; ++pass)
+        p.add_pass();
+    EXPECT_NEAR(picture_error(p.sum, 0.95) / foreseen[0].error, 1, 0.25);
+    // The error asked for comes first.
+    o.until_error = now * 0.37;
+    picture_judge asked(o);
+    noisy_picture q(2);
+    for (int pass = 0; pass < 8; ++pass) {
+        q.add_pass();
+        asked.after_pass(q.sum, 2 * (pass + 1), {});
+    }
+    foreseen = asked.foreseen_errors(2, 0);
+    ASSERT_EQ(foreseen.size(), 2u);
+    EXPECT_EQ(foreseen[0].error, o.until_error);
+    EXPECT_LT(foreseen[1].error, o.until_error);
+    for (const double x : {1e-9, 0.0099999, 0.01, 0.0100001, 0.02, 0.6, 1.0, 7e12}) {
+        EXPECT_LT(detail::round_below(x), x);
+        EXPECT_GT(detail::round_below(x), 0.39 * x);
+    }
+}
+
 /// Half the error takes eight times the passes where it falls with the cube root of them, as blur does.
 TEST(picture_judge, foresees_the_end_by_the_rate_at_which_the_error_falls)
 {

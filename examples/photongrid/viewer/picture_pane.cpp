@@ -1,5 +1,6 @@
 #include "picture_pane.hpp"
 
+#include "../progress_bar.hpp"
 #include "display.hpp"
 
 #include <photongrid/io/tone_map.hpp>
@@ -124,20 +125,19 @@ void draw_scene_error(const std::string& what)
 }
 
 namespace {
-    /// "picture 40 %  passes 12  error 0.034  left 8 s"; what is not known is left out.
+    /// "picture 40 %  passes 12  left 8 s  error 0.034, 0.02 in about 15 s"; what is not known is left out.
     std::string of_whole_picture(const render_report& r)
     {
         char text[64];
         std::snprintf(text, sizeof text, "picture %.0f %%  passes %u", 100 * r.progress.whole, r.progress.passes);
         std::string all = text;
-        if (std::isfinite(r.stats.end.error)) {
-            std::snprintf(text, sizeof text, "  error %.2g", r.stats.end.error);
-            all += text;
-        }
         if (std::isfinite(r.progress.seconds_left)) {
             std::snprintf(text, sizeof text, "  left %.0f s", r.progress.seconds_left);
             all += text;
         }
+        if (std::isfinite(r.stats.end.error))
+            all += "  error " + progress_bar::with_digits(r.stats.end.error)
+                + progress_bar::foreseen(r.progress, ": ");
         return all;
     }
 } // namespace

@@ -59,7 +59,7 @@ exit_code run_view(const view_options& o, bool (*stop_asked)())
     try {
         viewer::file_stamps files;
         w.begin = viewer::open_noting_files(w.open, o.picture.scene_path, files);
-        w.renderer = renderer_asked(o.picture);
+        w.renderer = candidates(renderer_asked(o.picture)).front();
     } catch (const std::invalid_argument& e) {
         std::cerr << "photongrid: error: on the command line: " << e.what() << '\n';
         return usage_error;

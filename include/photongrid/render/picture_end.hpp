@@ -3,6 +3,7 @@
 #pragma once
 
 #include <photongrid/render/picture_error.hpp>
+#include <photongrid/render/render_state.hpp>
 #include <photongrid/render/render_stats.hpp>
 
 #include <algorithm>
@@ -51,6 +52,18 @@ struct picture_forecast {
     double fraction = 0;                                           ///< done, of the whole picture, 0 to 1
     double seconds_left = std::numeric_limits<double>::infinity(); ///< infinity: not known yet
 };
+
+namespace detail {
+    /// The largest of 1, 2 and 5 times the powers of ten that is less than x > 0, by more than rounding.
+    inline double round_below(double x)
+    {
+        const double decade = std::pow(10.0, std::ceil(std::log10(x)) - 1);
+        for (const double digit : {5.0, 2.0, 1.0})
+            if (digit * decade < x * (1 - 1e-9))
+                return digit * decade;
+        return decade / 2;
+    }
+} // namespace detail
 
 /// Decides when a picture ends. Times are in s, since the picture was begun.
 class picture_judge {
@@ -124,17 +137,41 @@ public:
         }
         return f;
     }
+    /// Two smaller errors and when more passes would have them, whether or not the picture may have so many:
+    /// until_error, if it is not reached yet, and round ones. None as long as the error or the time is unknown.
+    /// `since`: the last pass, s.
+    std::vector<foreseen_error> foreseen_errors(double pass_seconds, double since) const
+    {
+        std::vector<foreseen_error> all;
+        if (result_.passes < least_passes || !(result_.error > 0) || !std::isfinite(result_.error)
+            || !(pass_seconds > 0 && std::isfinite(pass_seconds)))
+            return all;
+        double error = output_.until_error;
+        if (!(error > 0 && error < result_.error))
+            error = detail::round_below(0.9 * result_.error);
+        for (int i = 0; i < 2; ++i, error = detail::round_below(error)) {
+            const double passes = passes_for(error);
+            const double seconds = (passes - result_.passes) * pass_seconds - since;
+            all.push_back({error, passes, std::max(seconds, 0.0)});
+        }
+        return all;
+    }
 
 private:
-    /// Whether the error is found after this pass: after each, then after one in sixteen of those before, because
-    /// finding it takes time and it hardly changes.
-    static bool is_looked_at(std::uint32_t passes) { return passes % std::bit_floor(std::max(passes / 16, 1u)) == 0; }
+    /// Whether the error is found after this pass, because finding it takes time and it hardly changes: where a rule
+    /// needs it after each, then after one in sixteen of those before; otherwise whenever their number has doubled.
+    bool is_looked_at() const
+    {
+        const auto passes = result_.passes;
+        return output_.has_stop_rule() ? passes % std::bit_floor(std::max(passes / 16, 1u)) == 0
+                                       : passes >= least_passes && std::has_single_bit(passes);
+    }
 
     void judge(const film& sum)
     {
         result_.passes = sum.passes();
         const bool last = result_.passes >= output_.passes_at_most();
-        if (last || (output_.has_stop_rule() && is_looked_at(result_.passes)))
+        if (last || is_looked_at())
             find_error(sum);
         if (output_.until_error > 0 && result_.passes >= least_passes && result_.error <= output_.until_error)
             end(ended_by::error);
@@ -169,8 +206,12 @@ private:
         const double most = output_.passes_at_most();
         if (output_.until_error == 0 || result_.passes < 2)
             return most;
-        const double times = std::pow(result_.error / output_.until_error, 1 / rate_of_error());
-        return std::clamp(std::ceil(error_of_ * times), std::min(double{least_passes}, most), most);
+        return std::clamp(passes_for(output_.until_error), std::min(double{least_passes}, most), most);
+    }
+    /// The number of passes of which the error is to be expected.
+    double passes_for(double error) const
+    {
+        return std::ceil(error_of_ * std::pow(result_.error / error, 1 / rate_of_error()));
     }
 
     output_settings output_;

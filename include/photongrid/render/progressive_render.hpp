@@ -146,6 +146,7 @@ public:
         const auto foreseen = forecast(p);
         p.whole = foreseen.fraction;
         p.seconds_left = foreseen.seconds_left;
+        p.errors = judge_.foreseen_errors(judge_.pass_seconds(), clock_.seconds() - judge_.last_end());
         return p;
     }
     std::uint64_t maps() const override { return maps_.begun(); }

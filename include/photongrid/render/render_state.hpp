@@ -10,10 +10,18 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <photongrid/core/exact_begin.hpp>
 
 namespace photongrid {
+
+/// An error that a picture does not have yet (output_settings::until_error), and what it would take.
+struct foreseen_error {
+    double error = 0;
+    double passes = 0;  ///< in the picture then
+    double seconds = 0; ///< from now on, by the measured times
+};
 
 /// The progress of a progressive_render.
 struct render_progress {
@@ -26,6 +34,7 @@ struct render_progress {
     std::uint32_t passes = 0;     ///< passes in the picture
     double whole = 0;             ///< of the whole picture, 0 to 1, as far as that can be foreseen
     double seconds_left = std::numeric_limits<double>::infinity(); ///< by the measured times; infinity: not known yet
+    std::vector<foreseen_error> errors{}; ///< the next smaller errors; none as long as nothing is known of them
 };
 
 /// An unfinished pass: its finished rows, and the light of the first rays of the band of rows after them.
