@@ -136,8 +136,7 @@ namespace {
             all += text;
         }
         if (std::isfinite(r.stats.end.error))
-            all += "  error " + progress_bar::with_digits(r.stats.end.error)
-                + progress_bar::foreseen(r.progress, ": ");
+            all += "  error " + progress_bar::with_digits(r.stats.end.error) + progress_bar::foreseen(r.progress, ": ");
         return all;
     }
 } // namespace
