@@ -25,8 +25,8 @@ struct renderer_options {
     bool time_passes = false;     ///< measure passes, on vulkan, gl and gl-osmesa
 };
 
-/// What "auto" may stand for: vulkan if there is a hardware Vulkan device (discrete ones first), then cpu, or serial in a
-/// build without it. `o` alone if it names a backend.
+/// What "auto" may stand for: vulkan if there is a hardware Vulkan device (discrete ones first), then cpu, or serial in
+/// a build without it. `o` alone if it names a backend.
 std::vector<renderer_options> candidates(const renderer_options& o);
 
 /// A backend, and how long it takes for a pass of a picture.
