@@ -62,9 +62,10 @@ namespace {
     }
 
     /// What to say of tracing that ended with few of the photons asked for; "" for others.
-    std::string few_photons(const scene& s, const photon_stats& p)
+    std::string few_photons(const scene& s, const photon_stats& p, const render_settings& settings)
     {
-        if (p.emitted == 0 || 40 * p.stored > p.asked)
+        constexpr std::uint32_t too_few = 100; // that tell nothing, as of a pilot that found no use for any
+        if (p.emitted == 0 || 40 * p.stored > p.asked || settings.map.photons < too_few)
             return "";
         const auto share = text("at most ", 100 * most_expected(p.stored) / static_cast<double>(p.emitted), " %");
         const auto paths = text(p.emitted, " photon paths from ", detail::names_of_lights(s));
@@ -131,7 +132,7 @@ std::vector<std::string> warnings(
     std::vector<std::string> all;
     if (stats.invalid_pixels > 0)
         all.push_back(text(stats.invalid_pixels, " pixels were NaN or infinite and are black"));
-    if (const auto few = few_photons(s, stats.photons); !few.empty())
+    if (const auto few = few_photons(s, stats.photons, settings); !few.empty())
         all.push_back(few);
     if (corrects_nothing(s, settings))
         all.push_back("--edge-correction polygons changes nothing here: no polygon of the scene stores photons, and "
