@@ -113,7 +113,7 @@ list(JOIN backends ", " backends)
 photongrid_pkg_config(photongrid-renderer "photongrid's renderer on a backend chosen at run time" REQUIRES "${backends}"
   LIBS "-L\${pcfiledir}/${to_library} -lphotongrid_renderer" OF photongrid_renderer)
 if(TARGET photongrid_io)
-  photongrid_pkg_config(photongrid-io "photongrid's scene files and pictures" REQUIRES "photongrid, OpenEXR, libpng, pugixml, zlib"
+  photongrid_pkg_config(photongrid-io "photongrid's scene files and pictures" REQUIRES "photongrid, OpenEXR, libjpeg, libpng, pugixml, zlib"
     LIBS "-L\${pcfiledir}/${to_library} -lphotongrid_io" OF photongrid_io)
 endif()
 
@@ -178,7 +178,7 @@ execute_process(COMMAND "@CMAKE_COMMAND@" --build "@PROJECT_BINARY_DIR@" --targe
   set(CPACK_DEBIAN_COMPILED_PACKAGE_DEPENDS "${depends}")
   set(recommends "")
   if(TARGET photongrid_io)
-    list(APPEND recommends "libopenexr-dev, libpng-dev, libpugixml-dev, zlib1g-dev")
+    list(APPEND recommends "libjpeg-dev, libopenexr-dev, libpng-dev, libpugixml-dev, zlib1g-dev")
   endif()
   foreach(name IN ITEMS gl vulkan) # of the renderer
     if(TARGET photongrid_${name})

@@ -1,14 +1,15 @@
 # photongrid::io: scene files and pictures. Its headers name none of the libraries it is made with.
 find_package(nlohmann_json QUIET)
 find_package(OpenEXR QUIET)
+find_package(JPEG QUIET)
 find_package(PNG QUIET)
 find_package(ZLIB QUIET)
 find_package(pugixml QUIET)
 find_path(PHOTONGRID_STB_INCLUDE_DIR stb/stb_image.h)
 mark_as_advanced(PHOTONGRID_STB_INCLUDE_DIR)
-if(NOT TARGET nlohmann_json::nlohmann_json OR NOT TARGET OpenEXR::OpenEXR OR NOT TARGET PNG::PNG OR NOT TARGET ZLIB::ZLIB
+if(NOT TARGET nlohmann_json::nlohmann_json OR NOT TARGET OpenEXR::OpenEXR OR NOT TARGET PNG::PNG OR NOT TARGET JPEG::JPEG OR NOT TARGET ZLIB::ZLIB
     OR NOT TARGET pugixml::pugixml OR NOT PHOTONGRID_STB_INCLUDE_DIR)
-  message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libopenexr-dev, libpng-dev, libpugixml-dev, libstb-dev, zlib1g-dev)")
+  message(STATUS "photongrid: no scene files or pictures, and no program (Debian packages nlohmann-json3-dev, libjpeg-dev, libopenexr-dev, libpng-dev, libpugixml-dev, libstb-dev, zlib1g-dev)")
   return()
 endif()
 # Headers of examples/photongrid are <photongrid/io/...> and <photongrid/compare/...>, here as where they are installed.
@@ -29,7 +30,7 @@ target_sources(photongrid_io PUBLIC FILE_SET HEADERS BASE_DIRS ${photongrid_io_r
   ${folder}/scene_edit.hpp ${folder}/scene_error.hpp ${folder}/scene_export.hpp ${folder}/scene_file.hpp
   ${folder}/scene_import.hpp ${folder}/scene_writer.hpp ${folder}/tone_map.hpp)
 target_link_libraries(photongrid_io PUBLIC photongrid PRIVATE $<BUILD_INTERFACE:photongrid_warnings>
-  $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR PNG::PNG ZLIB::ZLIB pugixml::pugixml)
+  $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> OpenEXR::OpenEXR JPEG::JPEG PNG::PNG ZLIB::ZLIB pugixml::pugixml)
 target_compile_options(photongrid_io PRIVATE ${photongrid_warm})
 target_include_directories(photongrid_io SYSTEM PRIVATE $<BUILD_INTERFACE:${PHOTONGRID_STB_INCLUDE_DIR}>)
 if(PHOTONGRID_SANITIZE)

@@ -5,7 +5,7 @@
 base_packages=(
   g++ cmake ninja-build
   libtbb-dev libhwy-dev
-  libglm-dev libcli11-dev nlohmann-json3-dev libopenexr-dev libpng-dev libstb-dev
+  libglm-dev libcli11-dev nlohmann-json3-dev libjpeg62-turbo-dev libopenexr-dev libpng-dev libstb-dev
   libpugixml-dev zlib1g-dev
 )
 window_packages=(pkg-config libgl-dev libopengl-dev libglfw3-dev libimgui-dev)

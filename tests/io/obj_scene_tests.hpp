@@ -414,9 +414,8 @@ namespace {
                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                 "end_header\n0 0 0\n");
         })
-                      .find("s.ply:8:1: error: the header declares no face with the list vertex_indices; a cloud of "
-                            "points has no "
-                            "surface"),
+                      .find("s.ply:8:1: error: the header declares neither faces with the list vertex_indices nor "
+                            "strips of triangles; a cloud of points has no surface"),
             0u);
     }
 

@@ -389,7 +389,7 @@ namespace {
                 "files"},
             {"WorldBegin\nObjectInstance \"x\"\n" + ball, "s.pbrt:2:1: error: the object \"x\" is not defined"},
             {"WorldBegin\nScale 0 1 1\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]\n",
-                "s.pbrt:3:1: error: matrix: makes the mesh flat; scale it by more than 0 along each axis"},
+                "s.pbrt: error: the scene has no shape that can be drawn"},
             {"WorldBegin\nMaterial \"dielectric\"\n" + ball + "Translate 1 0 0\n" + ball
                     + "Material \"diffuse\"\nTranslate 9 0 0\n" + ball,
                 "s.pbrt:5:1: error: this body overlaps another one of the same glass"},

@@ -7,5 +7,6 @@
 #include "mitsuba_file_tests.hpp"
 #include "named_file_tests.hpp"
 #include "obj_scene_tests.hpp"
+#include "odd_value_tests.hpp"
 #include "pbrt_file_tests.hpp"
 #include "spectra_tests.hpp"

@@ -55,16 +55,13 @@ namespace {
         const auto folder = picture_folder();
         write_png(folder / "wood.png", PNG_FORMAT_RGB, {255, 188, 0, 55, 0, 255});
         std::ofstream(folder / "no.png", std::ios::binary) << "no picture";
-        write_image((folder / "nan.pfm").string(),
-            {.width = 1, .height = 1, .pixels = {glm::vec3(std::numeric_limits<float>::quiet_NaN())}});
         struct bad {
             std::string keys, mesh, what;
             int line;
         };
         const std::string wood = R"("texture": "wood.png")";
         for (const auto& b : {bad{R"("texture": "none.png")", with_coordinates, "none.png", 6},
-                 {R"("texture": "no.png")", with_coordinates, "cannot be read", 6},
-                 {R"("texture": "nan.pfm")", with_coordinates, "not a number", 6},
+                 {R"("texture": "no.png")", with_coordinates, "is no picture", 6},
                  {R"("texture": "../wood.png")", with_coordinates, "in the scene's folder", 6},
                  {R"("texture": 3)", with_coordinates, "the name of a file", 6},
                  {R"("texture": {"wrap": "clamp"})", with_coordinates, "\"file\"", 6},
@@ -210,10 +207,9 @@ namespace {
                         + tail + "0 0 0 " + value + "\n1 0 0 0 0 0 0 0\n0 1 0 0 0 0 0 0\n3 0 1 2\n");
             });
         };
-        EXPECT_EQ(refused("uchar", "255 0 0 0 0"), "");
-        EXPECT_NE(refused("uchar", "256 0 0 0 0").find("0 to 255"), std::string::npos);
-        EXPECT_NE(refused("float", "1.5 0 0 0 0").find("0 to 1"), std::string::npos);
-        EXPECT_NE(refused("float", "0 0 0 1e9 0").find("10^6"), std::string::npos);
+        for (const auto* value : {"255 0 0 0 0", "256 0 0 0 0", "1.5 0 0 0 0", "0 0 0 1e9 0"})
+            for (const auto* type : {"uchar", "float"})
+                EXPECT_EQ(refused(type, value), "") << "one odd value refuses no file";
     }
 
 } // namespace

@@ -55,8 +55,8 @@ namespace {
         EXPECT_EQ(e.err, "");
         EXPECT_TRUE(e.out.ends_with("\npicture-error.png\n")) << e.out;
         const auto sheet = read_channels((folder / "picture-error.png").string());
-        EXPECT_EQ(sheet.width, 3 * (240 + 4) + 4u);
-        EXPECT_EQ(sheet.height, 2 * (160 + 23) + 4u);
+        EXPECT_EQ(sheet.header.width, 3 * (240 + 4) + 4u);
+        EXPECT_EQ(sheet.header.height, 2 * (160 + 23) + 4u);
 
         const auto found = stats();
         EXPECT_EQ(found.at("size"), nlohmann::json({6, 4}));
@@ -112,7 +112,7 @@ namespace {
         EXPECT_EQ(region(stats(), "all").at("pixels"), 22);
         EXPECT_NEAR(region(stats(), "all").at("relmse").get<double>(), 11 / (2.01 * 2.01) / 22, 1e-9);
         const auto sheet = read_channels((folder / "e.png").string());
-        EXPECT_EQ(sheet.pixels[4 * sheet.width + 4 + 2 * 244], glm::vec4(0, 1, 0, 1));
+        EXPECT_EQ(sheet.pixels[4 * sheet.header.width + 4 + 2 * 244], glm::vec4(0, 1, 0, 1));
         const auto none = run({"error", "nowhere.pfm", "reference.pfm", "-o", "none.png"});
         EXPECT_EQ(none.code, 1);
         EXPECT_EQ(none.err, "photongrid: error: no pixel is finite in both pictures\n");

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 namespace photongrid {
@@ -29,7 +30,8 @@ namespace gltf {
                     builder_.note(all_.element("animations", 0).place(),
                         "animations are left out: everything is where the nodes have it");
                 for (const auto n : drawn_)
-                    add_node(n);
+                    if (!nodes_[n].is_hidden)
+                        add_node(n);
                 return builder_.finish();
             }
 
@@ -37,6 +39,7 @@ namespace gltf {
             struct node {
                 glm::dmat4 to_parent{1}, to_scene{1};
                 std::vector<std::size_t> children;
+                bool is_hidden = false; ///< with all that is below it
             };
 
             // --- nodes ---
@@ -76,6 +79,8 @@ namespace gltf {
                 for (std::size_t n = 0; n < count; ++n) {
                     const auto p = all_.element("nodes", n);
                     nodes_.push_back({.to_parent = matrix_of(p), .children = {}});
+                    if (const auto seen = p.extension("KHR_node_visibility"))
+                        nodes_[n].is_hidden = !seen->truth("visible", true);
                     for (const auto& c : p.items("children")) {
                         const auto child = c.as_index("nodes");
                         if (has_parent[child])
@@ -136,6 +141,7 @@ namespace gltf {
                     made.push_back(n);
                     const auto& children = nodes_[n].children;
                     for (auto c = children.rbegin(); c != children.rend(); ++c) {
+                        nodes_[*c].is_hidden = nodes_[*c].is_hidden || nodes_[n].is_hidden;
                         nodes_[*c].to_scene = nodes_[n].to_scene * nodes_[*c].to_parent;
                         left.push_back(*c);
                     }
@@ -280,13 +286,28 @@ namespace gltf {
                         builder_.note(place, material.name + ": the colour of its emission is even where it emits");
                 }
                 if (dark)
-                    builder_.add_mesh(place, dark, to_scene, material.index);
+                    builder_.add_mesh(place, dark, to_scene, body_or_pane(place, *dark, material));
                 if (!lit)
                     return;
                 if (!material.is_black)
                     builder_.note(
                         place, material.name + ": the surface of a lamp: black; what it reflects is left out");
                 builder_.add_emitter(place, lit, to_scene, {radiance, material.is_double_sided && !is_closed(*lit)});
+            }
+
+            /// Exporters, Blender's too, write bodies of glass without the volume that glTF wants of them. What is
+            /// closed is one.
+            std::uint32_t body_or_pane(const source_place& place, const mesh& m, const surface_material& material)
+            {
+                if (!material.is_pane || !is_closed(m))
+                    return material.index;
+                if (noted_bodies_.insert(material.index).second)
+                    builder_.note(place,
+                        material.name
+                            + ": its closed meshes are drawn as bodies of glass, others as panes; KHR_materials_volume "
+                              "says "
+                              "what is a body");
+                return builder_.as_body(place, material.index);
             }
 
             // --- lights ---
@@ -333,6 +354,7 @@ namespace gltf {
             std::vector<node> nodes_;
             std::vector<std::size_t> drawn_;
             std::map<std::shared_ptr<const mesh>, emitting_parts> divided_;
+            std::set<std::uint32_t> noted_bodies_; ///< materials of panes that closed meshes have
             std::size_t shapes_ = 0;
         };
     } // namespace

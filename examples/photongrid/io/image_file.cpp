@@ -1,25 +1,19 @@
 #include <photongrid/io/image_file.hpp>
 #include <photongrid/io/image_formats.hpp>
 #include <photongrid/io/tone_map.hpp>
+#include <photongrid/io/whole_file.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
-#include <span>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 
 namespace photongrid {
 
 namespace fs = std::filesystem;
-
-void image_formats::check_read_size(const std::string& path, std::int64_t width, std::int64_t height)
-{
-    constexpr std::int64_t max_edge = 65536, max_pixels = std::int64_t{1} << 28;
-    if (width < 1 || height < 1 || width > max_edge || height > max_edge || width * height > max_pixels)
-        fail_file(path,
-            "is " + std::to_string(width) + " x " + std::to_string(height)
-                + " pixels; expected at most 65536 per side and 2^28 in total");
-}
 
 namespace {
     std::string ending(const std::string& path)
@@ -62,99 +56,164 @@ void write_image(const std::string& path, const image& picture, double exposure,
     write_file(path, bytes);
 }
 
+void pixel_budget::take(const picture_header& header, std::size_t bytes)
+{
+    constexpr std::uint64_t edge = image_formats::max_picture_edge;
+    const auto size = std::to_string(header.width) + " x " + std::to_string(header.height) + " pixels";
+    if (header.width < 1 || header.height < 1 || header.width > edge || header.height > edge)
+        throw std::runtime_error("it is " + size + "; expected at most 65,536 along each side");
+    bytes_ += bytes;
+    used_ += std::uint64_t{header.width} * header.height * std::max((header.channels + 3) / 4, 1u);
+    if (used_ > most_ + 32 * bytes_)
+        throw std::runtime_error("it claims " + size + " in " + std::to_string(bytes)
+            + " bytes: with those before more than " + std::to_string(most_)
+            + ", and 32 a byte; --max-pixels lets pictures have more");
+}
+
 namespace {
-    /// A format that can be read, by the ending of its files.
-    template <class Picture>
-    struct readable {
-        std::string_view ending;
-        Picture (*read)(const std::string& path);
+    /// Passes a picture on if it may have so many pixels.
+    class limited_sink : public picture_sink {
+    public:
+        limited_sink(picture_sink& to, pixel_budget& budget, std::size_t bytes)
+            : to_(to), budget_(budget), bytes_(bytes)
+        {
+        }
+        void begin(const picture_header& header) override
+        {
+            budget_.take(header, bytes_);
+            to_.begin(header);
+        }
+        void row(std::uint32_t y, std::span<const glm::vec4> pixels) override { to_.row(y, pixels); }
+
+    private:
+        picture_sink& to_;
+        pixel_budget& budget_;
+        std::size_t bytes_;
+    };
+    /// Keeps what `Pixel` makes of a picture's pixels.
+    template <class Pixels, class Pixel>
+    class keeping_sink : public picture_sink {
+    public:
+        keeping_sink(Pixels& pixels, Pixel pixel) : pixels_(pixels), pixel_(pixel) {}
+        void begin(const picture_header& header) override
+        {
+            this->header = header;
+            pixels_.resize(std::size_t{header.width} * header.height);
+        }
+        void row(std::uint32_t y, std::span<const glm::vec4> pixels) override
+        {
+            auto* to = pixels_.data() + std::size_t{y} * header.width;
+            for (const auto& p : pixels)
+                *to++ = pixel_(p, header.is_srgb);
+        }
+        picture_header header;
+
+    private:
+        Pixels& pixels_;
+        Pixel pixel_;
     };
 
-    /// \throws file_error, for another ending with `expected`.
-    template <class Picture>
-    Picture read_as(std::span<const readable<Picture>> formats, const std::string& path, const char* expected)
+    using decoder = void (*)(std::string_view bytes, picture_sink& to);
+    /// The decoder of a file, by its content; a TGA alone has no mark, so that its name decides.
+    decoder decoder_of(const std::string& name, std::string_view bytes)
     {
-        const auto e = ending(path);
-        const auto* format = std::find_if(
-            formats.data(), formats.data() + formats.size(), [&](const auto& f) { return f.ending == e; });
-        if (format == formats.data() + formats.size())
-            fail_file(path, std::string("has no known extension; expected ") + expected);
-        if (std::error_code none; fs::is_directory(path, none))
-            fail_file(path, "is a folder");
+        using namespace image_formats;
+        if (bytes.starts_with("\x89PNG"))
+            return decode_png;
+        if (bytes.starts_with("\xFF\xD8\xFF"))
+            return decode_jpeg;
+        if (bytes.starts_with("\x76\x2F\x31\x01"))
+            return decode_exr;
+        if (bytes.starts_with("#?"))
+            return decode_hdr;
+        if (bytes.starts_with("PF") || bytes.starts_with("Pf"))
+            return decode_pfm;
+        if (ending(name) == ".tga")
+            return decode_tga;
+        fail_file(name, "is no picture that can be read; expected EXR, Radiance HDR, PFM, PNG, JPEG or TGA");
+    }
+    void decode_by(
+        decoder decode, const std::string& name, std::string_view bytes, picture_sink& to, pixel_budget& budget)
+    {
+        limited_sink limited(to, budget, bytes.size());
         try {
-            return format->read(path);
+            decode(bytes, limited);
         } catch (const file_error&) {
             throw;
+        } catch (const std::bad_alloc&) {
+            fail_file(name, "cannot be read: there is not enough memory for it");
         } catch (const std::exception& what) {
-            fail_file(path, std::string("cannot be read: ") + what.what());
+            fail_file(name, std::string("cannot be read: ") + what.what());
         }
+    }
+
+    std::string bytes_of(const std::string& path)
+    {
+        std::error_code wrong;
+        if (fs::is_directory(path, wrong))
+            fail_file(path, "is a folder");
+        try {
+            return whole_file(path);
+        } catch (const std::runtime_error&) {
+            fail_file(path, std::string("cannot be read: ") + std::strerror(errno));
+        }
+    }
+} // namespace
+
+void decode_picture(const std::string& name, std::string_view bytes, picture_sink& to, pixel_budget& budget)
+{
+    decode_by(decoder_of(name, bytes), name, bytes, to, budget);
+}
+
+namespace {
+    image decoded_image(decoder decode, const std::string& name, std::string_view bytes, pixel_budget& budget)
+    {
+        image made;
+        keeping_sink keep(made.pixels, linear_pixel);
+        decode_by(decode, name, bytes, keep, budget);
+        made.width = keep.header.width;
+        made.height = keep.header.height;
+        return made;
     }
 } // namespace
 
 image read_image(const std::string& path)
 {
-    static constexpr readable<image> formats[] = {{".exr", image_formats::read_exr}, {".pfm", image_formats::read_pfm}};
-    return read_as<image>(formats, path, ".exr or .pfm (a PNG is tone-mapped and clamped, so it cannot be measured)");
+    const auto bytes = bytes_of(path);
+    const auto decode = decoder_of(path, bytes);
+    if (decode != image_formats::decode_exr && decode != image_formats::decode_pfm)
+        fail_file(path, "is neither EXR nor PFM (a PNG is tone-mapped and clamped, so it cannot be measured)");
+    pixel_budget any(~std::uint64_t{0} / 64);
+    return decoded_image(decode, path, bytes, any);
 }
-
-namespace {
-    /// A picture without transparency.
-    picture_channels opaque(const image& picture, bool is_srgb)
-    {
-        picture_channels made{picture.width, picture.height, {}, is_srgb};
-        made.pixels.reserve(picture.pixels.size());
-        for (const auto& p : picture.pixels)
-            made.pixels.emplace_back(p, 1.0f);
-        return made;
-    }
-    template <image (*Read)(const std::string&), bool IsSrgb = false>
-    picture_channels read_opaque(const std::string& path)
-    {
-        return opaque(Read(path), IsSrgb);
-    }
-} // namespace
 
 picture_channels read_channels(const std::string& path)
 {
-    using namespace image_formats;
-    static constexpr readable<picture_channels> formats[] = {{".exr", read_opaque<read_exr>},
-        {".pfm", read_opaque<read_pfm>}, {".hdr", read_opaque<read_hdr>}, {".png", read_png_channels},
-        {".tga", read_tga_channels}, {".jpg", read_opaque<read_jpeg, true>}, {".jpeg", read_opaque<read_jpeg, true>}};
-    return read_as<picture_channels>(formats, path, ".exr, .hdr, .pfm, .png, .jpg or .tga");
+    picture_channels made;
+    keeping_sink keep(made.pixels, [](const glm::vec4& p, bool) { return p; });
+    const auto bytes = bytes_of(path);
+    pixel_budget budget;
+    decode_picture(path, bytes, keep, budget);
+    made.header = keep.header;
+    return made;
 }
 
-picture_channels decode_channels(const std::string& name, std::string_view bytes)
+image decode_linear_image(const std::string& name, std::string_view bytes, pixel_budget& budget)
 {
-    try {
-        if (bytes.starts_with("\x89PNG"))
-            return image_formats::png_channels(name, bytes);
-        if (bytes.starts_with("\xFF\xD8\xFF"))
-            return opaque(image_formats::jpeg_picture(name, bytes), true);
-    } catch (const file_error&) {
-        throw;
-    } catch (const std::exception& what) {
-        fail_file(name, std::string("cannot be read: ") + what.what());
-    }
-    fail_file(name, "is neither a PNG nor a JPEG file");
+    return decoded_image(decoder_of(name, bytes), name, bytes, budget);
 }
 
 image read_linear_image(const std::string& path)
 {
-    const auto picture = read_channels(path);
-    image made{.width = picture.width, .height = picture.height, .pixels = {}};
-    made.pixels.reserve(picture.pixels.size());
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        made.pixels.push_back(linear_pixel(picture, i));
-    return made;
+    pixel_budget budget;
+    return decode_linear_image(path, bytes_of(path), budget);
 }
 
-glm::vec3 linear_pixel(const picture_channels& picture, std::size_t pixel)
+glm::vec3 linear_pixel(const glm::vec4& pixel, bool is_srgb)
 {
-    const glm::vec3 p(picture.pixels[pixel]);
-    if (!picture.is_srgb)
-        return p;
-    const auto decoded = [](float v) { return linear_value(static_cast<unsigned char>(std::lround(v * 255.0f))); };
-    return {decoded(p.x), decoded(p.y), decoded(p.z)};
+    if (!is_srgb)
+        return glm::vec3(pixel);
+    return {linear_of(pixel.x), linear_of(pixel.y), linear_of(pixel.z)};
 }
 
 } // namespace photongrid

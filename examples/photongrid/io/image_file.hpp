@@ -6,9 +6,13 @@
 
 #include <glm/vec4.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace photongrid {
 
@@ -31,7 +35,42 @@ bool is_for_display(const std::string& path);
 /// \throws file_error.
 void write_image(const std::string& path, const image& picture, double exposure = 0, const image_notes& notes = {});
 
-/// Reads an EXR or PFM file. Of an EXR's channels it reads R, G and B.
+/// What the header of a picture file says.
+struct picture_header {
+    std::uint32_t width = 0, height = 0; ///< pixels
+    std::uint32_t channels = 4;          ///< that the file holds
+    bool is_srgb = false;                ///< red, green and blue are encoded, from 0 to 1: a PNG, JPEG or TGA file
+};
+
+/// Takes a picture while it is decoded, so that none is held twice.
+class picture_sink {
+public:
+    virtual ~picture_sink() = default;
+    /// Before the first row. It may throw: nothing of the picture has been held yet.
+    virtual void begin(const picture_header& header) = 0;
+    /// A row of red, green, blue and alpha, 1 where the file has none. Rows come once each, in any order; 0 is the top.
+    virtual void row(std::uint32_t y, std::span<const glm::vec4> pixels) = 0;
+};
+
+/// How many pixels the pictures of a scene may have, so that a small file cannot claim all memory.
+class pixel_budget {
+public:
+    /// Beside `most` pixels, 32 for each byte of the files.
+    explicit pixel_budget(std::uint64_t most = file_reading{}.max_pixels) : most_(most) {}
+    /// Takes those of a picture in a file of so many bytes. Four channels are one pixel, fewer count as four.
+    /// \throws std::runtime_error if there are not so many.
+    void take(const picture_header& header, std::size_t bytes);
+
+private:
+    std::uint64_t most_, used_ = 0, bytes_ = 0;
+};
+
+/// Decodes the bytes of an EXR, PFM, Radiance HDR, PNG, JPEG or TGA file; which one, its content says. `name`: that of
+/// the picture in messages. A PNG, JPEG or TGA is handed on as it is encoded, whatever it says of a gamma or a profile.
+/// \throws file_error.
+void decode_picture(const std::string& name, std::string_view bytes, picture_sink& to, pixel_budget& budget);
+
+/// Reads an EXR or PFM file. Of an EXR's channels it reads R, G and B, those of a layer where it has no others, or Y.
 /// \throws file_error.
 image read_image(const std::string& path);
 
@@ -40,23 +79,21 @@ image read_image(const std::string& path);
 /// \throws file_error.
 image read_linear_image(const std::string& path);
 
+/// The same of a file's bytes.
+/// \throws file_error.
+image decode_linear_image(const std::string& name, std::string_view bytes, pixel_budget& budget);
+
+/// The linear red, green and blue of one of a picture's pixels.
+glm::vec3 linear_pixel(const glm::vec4& pixel, bool is_srgb);
+
 /// The channels of a picture, row by row from the top left.
 struct picture_channels {
-    std::uint32_t width = 0, height = 0; ///< pixels
-    std::vector<glm::vec4> pixels;       ///< red, green, blue, alpha
-    bool is_srgb = false;                ///< red, green and blue are encoded, from 0 to 1: a PNG, JPEG or TGA file
+    picture_header header;
+    std::vector<glm::vec4> pixels; ///< red, green, blue, alpha
 };
 
-/// The linear red, green and blue of one of its pixels.
-glm::vec3 linear_pixel(const picture_channels& picture, std::size_t pixel);
-
-/// Reads what read_linear_image() reads, as the file has it: PNG, JPEG and TGA are not decoded. Alpha is 1 but in PNG
-/// and TGA files that have it.
+/// Reads what read_linear_image() reads, as decode_picture() hands it on.
 /// \throws file_error.
 picture_channels read_channels(const std::string& path);
-
-/// The same of a PNG or JPEG file's bytes; `name` is that of the picture in messages.
-/// \throws file_error, also for other formats.
-picture_channels decode_channels(const std::string& name, std::string_view bytes);
 
 } // namespace photongrid

@@ -6,6 +6,7 @@
 #include <photongrid/scene/scene.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,15 @@ struct import_settings {
     std::string camera_from{};
     /// A picture of light from everywhere, in place of the scene's environments; empty: none. Likewise.
     std::string environment{};
+    /// How far that picture is turned about y, degrees: 0 has its middle at z, 90 at x, where Blender has it. None: 90
+    /// for a scene that Blender wrote, else 0.
+    std::optional<double> environment_rotate{};
+    /// The unit in which a glTF file has the radiance of surfaces that emit. None: watts for a scene that Blender
+    /// wrote, else nits, as glTF says.
+    enum class emission { nits, watts }; ///< cd/m^2, or W/(m^2 sr)
+    std::optional<emission> emission_unit{};
+    /// The most pixels that the pictures which a scene names may have, beside 32 for each of their bytes.
+    std::uint64_t max_pixels = file_reading{}.max_pixels;
     bool z_up = false; ///< z is up in the file: the scene is turned so that y is
 };
 

@@ -34,9 +34,7 @@ namespace obj {
                 for (const auto& [material, faces] : faces_by_material())
                     add_faces(material, faces);
                 if (cutter_.not_cut() > 0)
-                    builder_.note(file_,
-                        std::to_string(cutter_.not_cut())
-                            + " faces cross themselves: their triangles cover each other, or more than the face");
+                    builder_.note(file_, text_of_crossed_faces(cutter_.not_cut()));
                 return builder_.finish();
             }
 
@@ -100,6 +98,8 @@ namespace obj {
                     builder_.note(s.place,
                         shown_word(s.statement) + " is left out"
                             + (s.count > 1 ? ", here and " + std::to_string(s.count - 1) + " times more" : ""));
+                if (surface_.flat.count > 0)
+                    builder_.note(surface_.flat.place, text_of_flat_faces(surface_.flat.count));
                 if (surface_.smooth_without_normals)
                     builder_.note(
                         *surface_.smooth_without_normals, "smoothing is left out: faces without normals look flat");
@@ -143,7 +143,7 @@ namespace obj {
 
             void add_faces(std::uint32_t number, const std::vector<face_range>& faces)
             {
-                const auto surface = std::make_shared<const mesh>(mesh_of(surface_, faces, &cutter_));
+                const auto surface = std::make_shared<const mesh>(mesh_of(surface_, faces, cutter_));
                 if (number == undefined) {
                     const material grey{
                         .name = "without material", .reflectance = dvec3(surface_.colors.empty() ? 0.5 : 1.0)};

@@ -255,7 +255,8 @@ namespace pbrt {
                 const auto illuminance = p.number("illuminance");
                 if (p.find("portal") != nullptr)
                     builder_.note(e.place, "the portal of an environment: light comes from everywhere");
-                const auto* file = p.find("filename");
+                const auto* old = p.find("mapname"); // pbrt-v3's
+                const auto* file = old != nullptr ? old : p.find("filename");
                 if (file == nullptr) {
                     auto radiance = values_.emission(e, "L") * scale;
                     if (illuminance && *illuminance > 0)
@@ -267,9 +268,17 @@ namespace pbrt {
                     builder_.note(e.place, "the illuminance of an environment with a picture is left out");
                 std::shared_ptr<const environment_map> map;
                 try {
-                    map = builder_.files().environment(p.text("filename", ""));
+                    map = builder_.files().environment(p.text(file->name, ""));
                 } catch (const file_error& wrong) {
                     fail_at(file->place, wrong.what());
+                }
+                if (old != nullptr) {
+                    // By longitude and latitude: the map's left edge is at x, its middle at -x; z is up.
+                    const glm::dmat4 upright(0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, 0, 0, 1);
+                    const auto radiance = p.find("L") != nullptr ? values_.emission(e, "L") : dvec3(1);
+                    builder_.add_environment(
+                        e.place, map, radiance * scale, e.to_world * upright, p.text(old->name, ""));
+                    return;
                 }
                 if (map->width != map->height)
                     fail_at(file->place,

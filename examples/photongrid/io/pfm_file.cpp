@@ -1,14 +1,13 @@
 #include <photongrid/io/image_formats.hpp>
 
+#include <algorithm>
 #include <bit>
-#include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <stdexcept>
 #include <system_error>
-
-namespace fs = std::filesystem;
+#include <vector>
 
 namespace photongrid::image_formats {
 
@@ -24,40 +23,53 @@ std::string pfm_bytes(const image& picture)
     return bytes;
 }
 
-image read_pfm(const std::string& path)
+namespace {
+    /// The next word of a header, which one white character ends.
+    std::string_view next_word(std::string_view& left)
+    {
+        const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+        while (!left.empty() && is_space(left.front()))
+            left.remove_prefix(1);
+        const auto* end = std::find_if(left.begin(), left.end(), is_space);
+        const auto word = left.substr(0, static_cast<std::size_t>(end - left.begin()));
+        left.remove_prefix(std::min(word.size() + 1, left.size()));
+        return word;
+    }
+    template <class T>
+    bool reads(std::string_view word, T& to)
+    {
+        const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), to);
+        return wrong == std::errc() && end == word.data() + word.size();
+    }
+} // namespace
+
+void decode_pfm(std::string_view bytes, picture_sink& to)
 {
-    errno = 0;
-    std::ifstream in(path, std::ios::binary);
-    std::string magic;
-    std::uint32_t width = 0, height = 0;
+    const auto magic = next_word(bytes);
+    picture_header header{.channels = magic == "PF" ? 3u : 1u};
     double scale = 0;
-    if (!(in >> magic))
-        fail_file(path, errno != 0 ? std::strerror(errno) : "is empty");
-    if ((magic != "PF" && magic != "Pf") || !(in >> width >> height >> scale) || in.get() == EOF || scale == 0
+    if ((magic != "PF" && magic != "Pf") || !reads(next_word(bytes), header.width)
+        || !reads(next_word(bytes), header.height) || !reads(next_word(bytes), scale) || scale == 0
         || !std::isfinite(scale))
-        fail_file(path, "is not a PFM file: expected \"PF\" or \"Pf\", width, height, scale");
-    check_read_size(path, width, height);
-    const std::size_t channels = magic == "PF" ? 3 : 1;
-    image picture{.width = width, .height = height, .pixels = {}};
-    std::error_code none;
-    if (fs::file_size(path, none) < std::uint64_t{width} * height * channels * sizeof(float))
-        fail_file(path, "ends too early for its " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
-    picture.pixels.resize(std::size_t{width} * height);
-    std::vector<float> row(width * channels);
-    for (std::uint32_t y = height; y-- > 0;) {
-        if (!in.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(row.size() * sizeof(float))))
-            fail_file(
-                path, "ends too early for its " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
-        for (std::size_t x = 0; x < width; ++x)
+        throw std::runtime_error("it is no PFM file: expected \"PF\" or \"Pf\", width, height, scale");
+    to.begin(header);
+    const std::size_t channels = header.channels, row_bytes = header.width * channels * sizeof(float);
+    if (bytes.size() / row_bytes < header.height)
+        throw std::runtime_error("the file ends within the picture");
+    std::vector<glm::vec4> row(header.width);
+    for (std::uint32_t y = header.height; y-- > 0; bytes.remove_prefix(row_bytes)) {
+        for (std::size_t x = 0; x < row.size(); ++x)
             for (std::size_t c = 0; c < 3; ++c) {
-                auto bits = std::bit_cast<std::uint32_t>(row[x * channels + c % channels]);
+                std::uint32_t bits = 0;
+                std::memcpy(&bits, bytes.data() + (x * channels + c % channels) * sizeof(float), sizeof bits);
                 if (scale > 0) // big-endian
                     bits = (bits << 24) | ((bits & 0xFF00u) << 8) | ((bits >> 8) & 0xFF00u) | (bits >> 24);
-                picture.pixels[std::size_t{y} * width + x][static_cast<int>(c)]
-                    = std::bit_cast<float>(bits) * static_cast<float>(std::abs(scale));
+                row[x][static_cast<int>(c)] = std::bit_cast<float>(bits) * static_cast<float>(std::abs(scale));
             }
+        for (auto& p : row)
+            p.w = 1;
+        to.row(y, row);
     }
-    return picture;
 }
 
 } // namespace photongrid::image_formats

@@ -1,3 +1,4 @@
+#include <photongrid/io/import/polygon_cutter.hpp>
 #include <photongrid/io/ply/header.hpp>
 #include <photongrid/io/tone_map.hpp>
 #include <photongrid/io/whole_file.hpp>
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -33,6 +35,9 @@ namespace ply {
                                 "triangle " + std::to_string(t) + ": its corner " + std::to_string(c) + " is vertex "
                                     + std::to_string(made_.triangles[t][c]) + "; there are "
                                     + std::to_string(made_.positions.size()));
+                cut_polygons();
+                if (rest_ != nullptr && flat_ > 0)
+                    rest_->left_out.push_back({0, text_of_flat_faces(flat_)});
                 return std::move(made_);
             }
 
@@ -44,8 +49,6 @@ namespace ply {
                 for (const auto& p : e.properties) {
                     const bool is_ascii = format_ == format::ascii;
                     least += is_ascii ? 2 : size_of(p.count.value_or(p.type));
-                    if (p.use == role::corners)
-                        least += 3 * (is_ascii ? 2 : size_of(p.type));
                 }
                 // The last number of a text needs no blank behind it.
                 if (e.count > 0 && least > 0 && e.count - 1 > (bytes_.size() - at_) / least)
@@ -95,37 +98,22 @@ namespace ply {
                 if (is_vertex && !is_single)
                     set_positions(made_, places);
             }
+            /// What is out of range is left to mend().
             float number_for(const property& p)
             {
-                switch (p.use) {
-                case role::u:
-                case role::v: return limited(p.type, -1e6, 1e6, "a texture coordinate that is not from -10^6 to 10^6");
-                case role::red:
-                case role::green:
-                case role::blue:
-                    if (p.type == scalar::u8) {
-                        const auto code = limited(p.type, 0, 255, "a colour that is not from 0 to 255");
-                        return linear_value(static_cast<unsigned char>(code));
-                    }
-                    return limited(p.type, 0, 1, "a colour that is neither a byte nor a number from 0 to 1");
-                default: return static_cast<float>(coordinate(p.type));
-                }
-            }
-            float limited(scalar type, double least, double most, const char* otherwise)
-            {
-                const double d = next(type);
-                if (!(d >= least && d <= most))
-                    fail(otherwise);
-                return static_cast<float>(d);
+                const bool is_code = p.use >= role::red && p.use <= role::blue && p.type == scalar::u8;
+                if (!is_code)
+                    return static_cast<float>(coordinate(p.type));
+                const double code = next(p.type);
+                return code >= 0 && code <= 255 ? linear_value(static_cast<unsigned char>(code))
+                                                : std::numeric_limits<float>::quiet_NaN();
             }
             double coordinate(scalar type)
             {
                 const double d = type == scalar::f32 && format_ == format::little_endian && bytes_.size() - at_ >= 4
                     ? binary_as<float>() // as nearly all files have them
                     : next(type);
-                if (!(std::abs(d) <= 1e18))
-                    fail("a coordinate that is not finite or above 10^18");
-                return d;
+                return std::abs(d) <= 1e18 ? d : std::numeric_limits<double>::quiet_NaN();
             }
             void read_list(const property& p)
             {
@@ -136,10 +124,15 @@ namespace ply {
                     > static_cast<double>(bytes_.size() - at_) + 1)
                     fail("a list of " + std::to_string(static_cast<std::uint64_t>(length))
                         + " needs more bytes than the file has");
-                if (p.use == role::corners && length < 3)
-                    fail("a face with " + std::to_string(static_cast<int>(length)) + " corners; expected at least 3");
+                const auto corners = static_cast<std::uint64_t>(length);
+                if (p.use == role::strips) {
+                    read_strips(p, corners);
+                    return;
+                }
+                if (p.use == role::corners)
+                    begin_face(corners);
                 std::uint32_t first = 0, before = 0;
-                for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(length); ++i) {
+                for (std::uint64_t i = 0; i < corners; ++i) {
                     const double d = next(p.type);
                     if (p.use != role::corners)
                         continue;
@@ -152,6 +145,56 @@ namespace ply {
                         made_.triangles.push_back({first, before, index});
                     before = index;
                 }
+            }
+
+            /// Counts a face that is no triangle.
+            void begin_face(std::uint64_t corners)
+            {
+                flat_ += corners < 3 ? 1 : 0;
+                if (corners > 3)
+                    polygons_.push_back({made_.triangles.size(), static_cast<std::size_t>(corners)});
+            }
+            /// Strips of triangles, each of whose corners makes one with the two before. -1 ends a strip.
+            void read_strips(const property& p, std::uint64_t corners)
+            {
+                std::array<std::uint32_t, 2> before{};
+                std::size_t in_strip = 0;
+                for (std::uint64_t i = 0; i < corners; ++i) {
+                    const double d = next(p.type);
+                    if (d == -1 || (p.type == scalar::u32 && d == 4294967295.0)) {
+                        in_strip = 0;
+                        continue;
+                    }
+                    if (!(d >= 0 && d <= 4294967294.0 && d == std::floor(d)))
+                        fail("an index that is neither -1 nor a whole number from 0 to 2^32 - 2");
+                    const auto index = static_cast<std::uint32_t>(d);
+                    // Every other triangle would show its back. Strips are joined by triangles without area.
+                    if (in_strip >= 2 && before[0] != before[1] && before[1] != index && before[0] != index)
+                        made_.triangles.push_back(in_strip % 2 == 0 ? glm::uvec3(before[0], before[1], index)
+                                                                    : glm::uvec3(before[1], before[0], index));
+                    before = {before[1], index};
+                    ++in_strip;
+                }
+            }
+            /// Cuts those that are no fans around their first corner.
+            void cut_polygons()
+            {
+                polygon_cutter cutter;
+                std::vector<std::uint32_t> corners;
+                std::vector<glm::dvec3> outline;
+                for (const auto& face : polygons_) {
+                    auto* triangles = &made_.triangles[face.first];
+                    corners = {triangles[0].x, triangles[0].y};
+                    for (std::size_t i = 0; i + 2 < face.corners; ++i)
+                        corners.push_back(triangles[i].z);
+                    outline.clear();
+                    for (const auto c : corners)
+                        outline.emplace_back(made_.positions[c]);
+                    for (const auto& t : cutter.triangles_of(outline, normal_of_polygon(outline)))
+                        *triangles++ = {corners[t.x], corners[t.y], corners[t.z]};
+                }
+                if (rest_ != nullptr && cutter.not_cut() > 0)
+                    rest_->left_out.push_back({0, text_of_crossed_faces(cutter.not_cut())});
             }
 
             /// Reads a face as nearly all files have them, without doubles, and with one look for the end of the file.
@@ -174,6 +217,7 @@ namespace ply {
                     for (std::size_t i = 0; i < length; ++i)
                         if (index(i) > 0x7FFFFFFFu)
                             return false;
+                begin_face(length);
                 for (std::size_t i = 2; i < length; ++i)
                     made_.triangles.push_back({index(0), index(i - 1), index(i)});
                 at_ += 1 + 4 * length;
@@ -230,7 +274,13 @@ namespace ply {
                 return 0;
             }
 
+            struct polygon {
+                std::size_t first;   ///< of its triangles, a fan
+                std::size_t corners; ///< more than three
+            };
             mesh made_;
+            std::vector<polygon> polygons_;
+            std::size_t flat_ = 0; ///< faces of fewer than three corners
         };
     } // namespace
 } // namespace ply

@@ -395,14 +395,14 @@ render_settings settings_unless_named(bool photons, bool grid)
     return s;
 }
 
-scene parse_scene(const std::string& file, std::string text, file_listener before_reading)
+scene parse_scene(const std::string& file, std::string text, file_reading how)
 {
-    return reader(file, std::move(text), std::move(before_reading)).read(std::filesystem::path(file).stem().string());
+    return reader(file, std::move(text), std::move(how)).read(std::filesystem::path(file).stem().string());
 }
 
-scene read_scene(const std::string& path, file_listener before_reading)
+scene read_scene(const std::string& path, file_reading how)
 {
-    return parse_scene(path, read_scene_text(path), std::move(before_reading));
+    return parse_scene(path, read_scene_text(path), std::move(how));
 }
 
 } // namespace photongrid

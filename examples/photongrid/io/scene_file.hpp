@@ -10,13 +10,13 @@
 namespace photongrid {
 
 /// Reads the scene in `text`; `file` is its name in messages. The files that it names are sought
-/// in its folder; `before_reading` hears of them, and may be empty.
+/// in its folder.
 /// \throws scene_error.
-scene parse_scene(const std::string& file, std::string text, file_listener before_reading = {});
+scene parse_scene(const std::string& file, std::string text, file_reading how = {});
 
 /// Reads a scene file.
 /// \throws scene_error.
-scene read_scene(const std::string& path, file_listener before_reading = {});
+scene read_scene(const std::string& path, file_reading how = {});
 
 /// The settings of a scene file that names none. `photons`: it has a number of photons; other numbers, but for `k`, are
 /// then those of render_settings and not automatic. `grid`: it has a grid, and `map` is then `sort`.

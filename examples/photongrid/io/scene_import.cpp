@@ -1,5 +1,6 @@
 #include <photongrid/io/gltf_file.hpp>
 #include <photongrid/io/import/glass_bodies.hpp>
+#include <photongrid/io/import/import_log.hpp>
 #include <photongrid/io/import/scene_files.hpp>
 #include <photongrid/io/mitsuba_file.hpp>
 #include <photongrid/io/obj_scene.hpp>
@@ -54,6 +55,12 @@ namespace {
                 return true;
         }
         return false;
+    }
+
+    /// Whether Blender wrote a glTF or an OBJ file, of which this is the beginning.
+    bool is_by_blender(std::string_view text)
+    {
+        return text.find("glTF Blender I/O") != text.npos || text.starts_with("# Blender");
     }
 
     constexpr std::string_view words_of_pbrt[] = {"Integrator", "Transform", "Sampler", "PixelFilter", "Film", "Camera",
@@ -118,18 +125,24 @@ namespace {
             throw scene_error(path, 0, 0, "a unit was given, but photongrid's own scene files have \"units\"");
         if (settings.z_up)
             throw scene_error(path, 0, 0, "y is up in photongrid's own scene files");
-        return {read_scene(path, settings.before_reading), {}};
+        import_log log(settings.strict);
+        auto s = read_scene(path, file_reading_of(settings, log));
+        return {std::move(s), log.take()};
     }
 
     /// Puts a picture in the place of a scene's environments.
-    void set_environment(scene& s, const std::string& path)
+    void set_environment(scene& s, const std::string& path, double degrees, file_reading how)
     {
         environment_light l;
         l.name = "environment"; // without the name of its file, which is not in the folder of the scene
         try {
-            l.map = scene_files("", true).environment(path);
+            l.map = scene_files("", true, how).environment(path);
         } catch (const file_error& e) {
             throw scene_error(path, 0, 0, e.what());
+        }
+        if (degrees != 0) {
+            l.axis = dvec3(0, 1, 0);
+            l.degrees = degrees;
         }
         s.environment_lights = {l};
     }
@@ -141,8 +154,20 @@ imported_scene import_scene(const std::string& path, const import_settings& sett
     const auto format = format_of(path, text);
     auto made = read_any(path, format, text, settings);
     mend_glass(made, path, format == scene_format::pbrt || format == scene_format::mitsuba);
-    if (!settings.environment.empty())
-        set_environment(made.scene, settings.environment);
+    if (!settings.environment.empty()) {
+        import_log log(settings.strict);
+        auto how = file_reading_of(settings, log);
+        how.before_reading = {}; // it is no file of the scene
+        const bool stands_as_in_blender = !settings.environment_rotate && is_by_blender(text);
+        set_environment(made.scene, settings.environment,
+            settings.environment_rotate.value_or(stands_as_in_blender ? 90.0 : 0.0), std::move(how));
+        if (stands_as_in_blender)
+            log.say(source_place(settings.environment),
+                "stands as in Blender, which wrote the scene, with its middle at x; --environment-rotate 0 turns it to "
+                "z");
+        for (auto& note : log.take())
+            made.notes.push_back(std::move(note));
+    }
     if (!settings.camera_from.empty()) {
         const auto from = import_scene(settings.camera_from, {.allow_outside = settings.allow_outside}).scene;
         made.scene.camera = from.camera;

@@ -18,10 +18,9 @@ namespace photongrid {
 /// A scene file's values, and those that make a mesh. Files of meshes are sought in the scene file's folder.
 class surface_reader : public scene_values {
 public:
-    /// `before_reading` hears of these files; it may be empty.
-    surface_reader(const std::string& file, std::string text, file_listener before_reading)
-        : scene_values(file, std::move(text)),
-          files_(std::filesystem::path(file).parent_path(), true, std::move(before_reading))
+    /// `how`: those files.
+    surface_reader(const std::string& file, std::string text, file_reading how)
+        : scene_values(file, std::move(text)), files_(std::filesystem::path(file).parent_path(), true, std::move(how))
     {
     }
 

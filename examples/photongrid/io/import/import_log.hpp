@@ -60,4 +60,12 @@ private:
     std::vector<import_note> notes_;
 };
 
+/// How the files of a scene are read: with notes in a log, which must outlive it.
+inline file_reading file_reading_of(const import_settings& settings, import_log& log)
+{
+    return {.before_reading = settings.before_reading,
+        .note = [&log](const std::string& path, const std::string& what) { log.add(source_place(path), what); },
+        .max_pixels = settings.max_pixels};
+}
+
 } // namespace photongrid

@@ -1,5 +1,6 @@
 #include <photongrid/io/import/checked_parts.hpp>
 #include <photongrid/io/import/default_view.hpp>
+#include <photongrid/io/import/mended_mesh.hpp>
 #include <photongrid/io/import/scene_builder.hpp>
 #include <photongrid/io/whole_file.hpp>
 
@@ -21,7 +22,7 @@ namespace {
 
 scene_builder::scene_builder(const std::string& path, const import_settings& settings)
     : file_(path), settings_(settings), log_(settings.strict),
-      files_(std::filesystem::path(path).parent_path(), settings.allow_outside, settings.before_reading)
+      files_(std::filesystem::path(path).parent_path(), settings.allow_outside, file_reading_of(settings, log_))
 {
     if (settings.unit && !(*settings.unit >= 1e-9 && *settings.unit <= 1e9))
         throw std::invalid_argument("import_settings: unit: must be from 1e-9 to 1e9 m");
@@ -103,6 +104,20 @@ std::uint32_t scene_builder::with_opacity(
     changed.opacity *= opacity;
     if (texture.map)
         changed.opacity_texture = texture;
+    return add_once(place, std::move(changed));
+}
+
+std::uint32_t scene_builder::as_body(const source_place& place, std::uint32_t m)
+{
+    auto changed = made_.materials[m];
+    if (changed.kind == material_kind::thin_glass)
+        changed.kind = material_kind::glass;
+    else if (is_mixture(changed))
+        for (auto& part : changed.parts)
+            part = as_body(place, part);
+    if (changed == made_.materials[m])
+        return m;
+    changed.name = (changed.name + " (body)").substr(0, 100);
     return add_once(place, std::move(changed));
 }
 
@@ -191,9 +206,58 @@ placed_mesh scene_builder::placed(
     return m;
 }
 
+std::shared_ptr<const mesh> scene_builder::flattened(
+    const source_place& place, const mesh& surface, const glm::dmat4& to_scene)
+{
+    const auto at = place_in_scene(place, to_scene);
+    const auto& l = at.linear;
+    if (std::abs(glm::determinant(l)) > 1e-12 * glm::length(l[0]) * glm::length(l[1]) * glm::length(l[2]))
+        return nullptr;
+    auto made = surface;
+    std::vector<dvec3> places;
+    for (const auto& p : surface.positions)
+        places.push_back(at.offset + l * (surface.origin + dvec3(p)));
+    set_positions(made, places);
+    made.normals.clear();
+    double size = 0;
+    for (const auto& p : places)
+        size = std::max(size, glm::length(p - places[0]));
+    std::erase_if(made.triangles, [&](const glm::uvec3& t) {
+        const auto a = places[t.y] - places[t.x], b = places[t.z] - places[t.x];
+        return !(glm::length(glm::cross(a, b)) > 1e-12 * size * size);
+    });
+    note(place,
+        made.triangles.empty() ? "a scale of 0 leaves nothing of this shape: it is not drawn"
+                               : "a scale of 0 makes this shape flat: drawn without its normals");
+    return std::make_shared<const mesh>(std::move(made));
+}
+
+std::shared_ptr<const mesh> scene_builder::drawable(const source_place& place, std::shared_ptr<const mesh> surface)
+{
+    if (const auto known = mended_.find(surface); known != mended_.end())
+        return known->second;
+    std::string said;
+    auto made = mended(surface, said);
+    if (!said.empty())
+        note(place, said);
+    if (made->triangles.empty())
+        made = nullptr;
+    if (made != surface)
+        mended_.emplace(std::move(surface), made);
+    return made;
+}
+
 void scene_builder::add_mesh(const source_place& place, std::shared_ptr<const mesh> surface, const glm::dmat4& to_scene,
     std::uint32_t material, const std::string& file)
 {
+    surface = drawable(place, std::move(surface));
+    if (surface == nullptr)
+        return;
+    if (auto flat = flattened(place, *surface, to_scene)) {
+        if (!flat->triangles.empty())
+            add_mesh(place, std::move(flat), glm::dmat4(glm::inverse(glm::dmat3(world_))), material);
+        return;
+    }
     auto m = placed(place, std::move(surface), to_scene, file);
     m.material = material;
     try {

@@ -8,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@ public:
     /// `path`: the scene's file.
     scene_builder(const std::string& path, const import_settings& settings);
 
+    const import_settings& settings() const { return settings_; }
     scene_files& files() { return files_; }
     import_log& log() { return log_; }
     void note(const source_place& place, const std::string& what) { log_.add(place, what); }
@@ -57,6 +59,8 @@ public:
     std::uint32_t add_mixture(const source_place& place, material m, std::uint32_t first, std::uint32_t second);
     /// The same material with an opacity, which meshes alone may have.
     std::uint32_t with_opacity(const source_place& place, std::uint32_t m, double opacity, const texture_use& texture);
+    /// Of thin glass, the same as a body of glass; others themselves.
+    std::uint32_t as_body(const source_place& place, std::uint32_t m);
     /// What has no surface but absorbs as much: glass of the index of refraction 1.
     std::uint32_t add_medium(const source_place& place, const std::string& name, const dvec3& absorbed);
     /// The same material, if it is glass, with what it absorbs of light by each of the file's units of length.
@@ -117,6 +121,11 @@ private:
     placing place_in_scene(const source_place& place, const glm::dmat4& to_scene) const;
     placed_mesh placed(const source_place& place, std::shared_ptr<const mesh> surface, const glm::dmat4& to_scene,
         const std::string& file);
+    /// The surface in the scene, if its transformation flattens it, as a scale of 0 does: what is left of it, which may
+    /// be nothing. Null for others.
+    std::shared_ptr<const mesh> flattened(const source_place& place, const mesh& surface, const glm::dmat4& to_scene);
+    /// The surface without what cannot be drawn, with a note where it first comes; null if nothing is left.
+    std::shared_ptr<const mesh> drawable(const source_place& place, std::shared_ptr<const mesh> surface);
     dvec3 point(const dvec3& p) const { return dvec3(world_ * glm::dvec4(p, 1)); }
     dvec3 direction(const dvec3& d) const { return glm::dmat3(world_) * d; }
     /// The factor on a round shape's lengths. 0: it is stretched, or its material is for meshes alone (a texture or an
@@ -140,8 +149,9 @@ private:
     double unit_ = 1;
     glm::dmat4 world_{1}; ///< from the file's space to the scene's
     bool has_camera_ = false;
-    std::optional<std::uint32_t> depth_;      ///< the most surfaces of a path
-    std::vector<source_place> sphere_places_; ///< of each sphere
+    std::optional<std::uint32_t> depth_;                                        ///< the most surfaces of a path
+    std::vector<source_place> sphere_places_;                                   ///< of each sphere
+    std::map<std::shared_ptr<const mesh>, std::shared_ptr<const mesh>> mended_; ///< by what they were
     dvec3 sky_{0};
     std::optional<environment_light> environment_;
     std::optional<source_place> sky_place_;

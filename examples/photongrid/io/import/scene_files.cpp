@@ -1,4 +1,4 @@
-#include <photongrid/io/image_file.hpp>
+#include <photongrid/io/import/mended_mesh.hpp>
 #include <photongrid/io/import/scene_files.hpp>
 #include <photongrid/io/obj_file.hpp>
 #include <photongrid/io/ply_file.hpp>
@@ -62,31 +62,76 @@ namespace {
         return made;
     }
 
-    texture texture_of_picture(const picture_channels& picture, texture_holds holds)
-    {
-        texture made{picture.width, picture.height, {}};
-        made.texels.reserve(picture.pixels.size());
-        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-            const glm::vec4 p
-                = holds == texture_holds::numbers ? picture.pixels[i] : glm::vec4(linear_pixel(picture, i), 1.0f);
-            if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z) || std::isnan(p.w))
-                throw std::invalid_argument("a pixel is not a number");
-            made.texels.emplace_back(glm::vec4(0.5f) + glm::clamp(p, 0.0f, 1.0f) * 65535.0f);
+    /// Counts values that a picture should not have.
+    struct odd_values {
+        std::uint64_t count = 0;
+        std::uint32_t x = 0, y = 0; ///< of the first
+        void add(std::size_t x_, std::uint32_t y_)
+        {
+            if (count++ == 0) {
+                x = static_cast<std::uint32_t>(x_);
+                y = y_;
+            }
         }
-        return made;
-    }
+        /// "3 values are `which`, the first at pixel (12, 5): `what`"
+        std::string text(const char* which, const char* what) const
+        {
+            return std::to_string(count) + (count == 1 ? " value is " : " values are ") + which
+                + (count == 1 ? "" : ", the first") + " at pixel (" + std::to_string(x) + ", " + std::to_string(y)
+                + "): " + what;
+        }
+    };
 
-    std::shared_ptr<const texture> checked_texture(
-        const std::string& path, const picture_channels& picture, texture_holds holds)
-    {
-        try {
-            texture_use use;
-            use.map = std::make_shared<const texture>(texture_of_picture(picture, holds));
-            check(use);
-            return use.map;
-        } catch (const std::invalid_argument& e) {
-            fail_file(path, e.what());
+    /// Makes a texture of a picture.
+    class texture_sink : public picture_sink {
+    public:
+        explicit texture_sink(texture_holds holds) : holds_(holds) {}
+        void begin(const picture_header& header) override
+        {
+            is_srgb_ = header.is_srgb;
+            made.width = header.width;
+            made.height = header.height;
+            made.texels.resize(std::size_t{header.width} * header.height);
         }
+        void row(std::uint32_t y, std::span<const glm::vec4> pixels) override
+        {
+            auto* to = made.texels.data() + std::size_t{y} * made.width;
+            for (std::size_t x = 0; x < pixels.size(); ++x) {
+                auto p = pixels[x];
+                for (int c = 0; c < 4; ++c)
+                    if (std::isnan(p[c])) {
+                        odd.add(x, y);
+                        p[c] = 0;
+                    }
+                if (holds_ == texture_holds::colour)
+                    p = glm::vec4(linear_pixel(p, is_srgb_), 1.0f);
+                to[x] = glm::u16vec4(glm::vec4(0.5f) + glm::clamp(p, 0.0f, 1.0f) * 65535.0f);
+            }
+        }
+        texture made;
+        odd_values odd;
+
+    private:
+        texture_holds holds_;
+        bool is_srgb_ = false;
+    };
+
+    /// Replaces what no light has.
+    odd_values mend_radiance(environment_map& map)
+    {
+        odd_values odd;
+        float largest = 0;
+        for (const auto& l : map.radiance)
+            for (int c = 0; c < 3; ++c)
+                if (std::isfinite(l[c]))
+                    largest = std::max(largest, l[c]);
+        for (std::size_t i = 0; i < map.radiance.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                if (auto& v = map.radiance[i][c]; !(v >= 0 && std::isfinite(v))) {
+                    odd.add(i % map.width, static_cast<std::uint32_t>(i / map.width));
+                    v = v > 0 ? largest : 0;
+                }
+        return odd;
     }
 } // namespace
 
@@ -128,8 +173,8 @@ std::string scene_files::path_of(const std::string& name) const
 std::string scene_files::path_of_regular(const std::string& name) const
 {
     auto path = path_of(name);
-    if (before_reading_)
-        before_reading_(path);
+    if (how_.before_reading)
+        how_.before_reading(path);
     std::error_code wrong;
     const auto status = fs::status(path, wrong);
     if (!fs::exists(status))
@@ -155,7 +200,16 @@ std::shared_ptr<const mesh> scene_files::surface(const std::string& name)
     auto& surface = surfaces_[name];
     if (!surface) {
         const auto path = path_of_regular(name), bytes = bytes_of(name);
-        auto made = ending_of(name) == ".obj" ? parse_obj(path, bytes) : parse_ply(path, bytes);
+        std::vector<std::string> left_out;
+        ply_rest rest;
+        auto made = ending_of(name) == ".obj" ? parse_obj(path, bytes, &left_out) : parse_ply(path, bytes, &rest);
+        for (const auto& r : rest.left_out)
+            if (r.line == 0) // of its faces
+                left_out.push_back(r.what);
+        if (auto said = mend(made); !said.empty())
+            left_out.push_back(std::move(said));
+        for (const auto& what : left_out)
+            note(path, what);
         if (made.triangles.empty())
             fail_file(path, "has no face");
         surface = std::make_shared<const mesh>(std::move(made));
@@ -163,13 +217,34 @@ std::shared_ptr<const mesh> scene_files::surface(const std::string& name)
     return surface;
 }
 
+void scene_files::note(const std::string& path, const std::string& what) const
+{
+    if (how_.note)
+        how_.note(path, what);
+}
+
+std::shared_ptr<const texture> scene_files::decoded_texture(
+    const std::string& path, std::string_view bytes, texture_holds holds)
+{
+    texture_sink sink(holds);
+    decode_picture(path, bytes, sink, pixels_);
+    if (sink.odd.count > 0)
+        note(path, sink.odd.text("not a number", "taken as 0"));
+    texture_use use;
+    use.map = std::make_shared<const photongrid::texture>(std::move(sink.made));
+    try {
+        check(use);
+    } catch (const std::invalid_argument& e) {
+        fail_file(path, e.what());
+    }
+    return use.map;
+}
+
 std::shared_ptr<const texture> scene_files::texture(const std::string& name, texture_holds holds)
 {
     auto& map = textures_[{name, holds}];
-    if (!map) {
-        const auto path = path_of_regular(name);
-        map = checked_texture(path, read_channels(path), holds);
-    }
+    if (!map)
+        map = decoded_texture(path_of_regular(name), bytes_of(name), holds);
     return map;
 }
 
@@ -178,7 +253,7 @@ std::shared_ptr<const texture> scene_files::texture_of(
 {
     auto& map = textures_[{name, holds}];
     if (!map)
-        map = checked_texture(name, decode_channels(name, bytes), holds);
+        map = decoded_texture(name, bytes, holds);
     return map;
 }
 
@@ -187,8 +262,10 @@ std::shared_ptr<const environment_map> scene_files::environment(const std::strin
     auto& map = environments_[name];
     if (!map) {
         const auto path = path_of_regular(name);
-        auto picture = read_linear_image(path);
+        auto picture = decode_linear_image(path, bytes_of(name), pixels_);
         environment_map made{picture.width, picture.height, std::move(picture.pixels)};
+        if (const auto odd = mend_radiance(made); odd.count > 0)
+            note(path, odd.text("no radiance", "below 0 or no number is taken as 0, infinite as the largest other"));
         try {
             check(made);
         } catch (const std::invalid_argument& e) {

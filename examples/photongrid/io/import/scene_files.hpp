@@ -1,7 +1,7 @@
 // The files that a scene's file names: meshes, textures and environments, each read once.
 #pragma once
 
-#include <photongrid/io/files.hpp>
+#include <photongrid/io/image_file.hpp>
 #include <photongrid/io/scene_error.hpp>
 #include <photongrid/scene/environment_map.hpp>
 #include <photongrid/scene/mesh.hpp>
@@ -26,10 +26,9 @@ std::string ending_of(const std::string& name);
 /// Reads files by their names in a scene's file.
 class scene_files {
 public:
-    /// `folder`: that of the scene's file. `allow_outside`: files may lie outside of it. `before_reading` hears of the
-    /// files that are read; it may be empty.
-    scene_files(std::filesystem::path folder, bool allow_outside, file_listener before_reading = {})
-        : folder_(std::move(folder)), allow_outside_(allow_outside), before_reading_(std::move(before_reading))
+    /// `folder`: that of the scene's file. `allow_outside`: files may lie outside of it.
+    scene_files(std::filesystem::path folder, bool allow_outside, file_reading how = {})
+        : folder_(std::move(folder)), allow_outside_(allow_outside), how_(std::move(how)), pixels_(how_.max_pixels)
     {
     }
 
@@ -49,26 +48,30 @@ public:
     /// \throws file_error; scene_error for a file that does not hold one.
     std::shared_ptr<const mesh> surface(const std::string& name);
 
-    /// A texture.
+    /// A texture: values are from 0 to 1, others are the nearest of these, and NaN is 0.
     /// \throws file_error.
     std::shared_ptr<const photongrid::texture> texture(const std::string& name, texture_holds holds);
 
-    /// A texture of a PNG or JPEG file's bytes, made once for each `name`.
+    /// The same of a picture file's bytes, made once for each `name`.
     /// \throws file_error.
     std::shared_ptr<const photongrid::texture> texture_of(
         const std::string& name, std::string_view bytes, texture_holds holds);
 
-    /// An environment, as its file has it.
+    /// An environment, as its file has it. Values below 0 and NaN are 0, infinite ones the largest of the others.
     /// \throws file_error.
     std::shared_ptr<const environment_map> environment(const std::string& name);
 
 private:
     std::filesystem::path found_path(const std::string& name) const;
     std::string path_of_regular(const std::string& name) const;
+    std::shared_ptr<const photongrid::texture> decoded_texture(
+        const std::string& path, std::string_view bytes, texture_holds holds);
+    void note(const std::string& path, const std::string& what) const;
 
     std::filesystem::path folder_;
     bool allow_outside_;
-    file_listener before_reading_;
+    file_reading how_;
+    pixel_budget pixels_; ///< for pictures that are still to come
     std::map<std::string, std::shared_ptr<const mesh>> surfaces_;
     std::map<std::pair<std::string, texture_holds>, std::shared_ptr<const photongrid::texture>> textures_;
     std::map<std::string, std::shared_ptr<const environment_map>> environments_;

@@ -103,12 +103,20 @@ double scene_builder::area(const mesh& surface, const glm::dmat4& to_scene) cons
 void scene_builder::add_emitter(const source_place& place, std::shared_ptr<const mesh> surface,
     const glm::dmat4& to_scene, const imported_emission& e, const std::string& file)
 {
+    surface = drawable(place, std::move(surface));
+    if (surface == nullptr)
+        return;
     if (e.two_sided) {
         bounds box;
         for (const auto& p : surface->positions)
             box.add(dvec3(p));
         // So far apart that rays from one side do not start behind the other.
         surface = both_sides(*surface, 0x1p-12 * glm::length(box.high - box.low));
+    }
+    if (auto flat = flattened(place, *surface, to_scene)) {
+        if (!flat->triangles.empty())
+            add_emitter(place, std::move(flat), glm::dmat4(glm::inverse(glm::dmat3(world_))), {e.radiance, false});
+        return;
     }
     const auto m = placed(place, std::move(surface), to_scene, e.two_sided ? "" : file);
     const double size = area_of(m);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -130,6 +131,24 @@ public:
         const bool is_one = is_number(word(), d) && std::isfinite(d);
         at_ = place;
         return is_one;
+    }
+
+    /// A number, or NaN for one that is not finite, such as "-nan(ind)" or 1e400: it is the mesh's reader that knows
+    /// what to do without it.
+    double any_number(const char* expected)
+    {
+        if (!find_word())
+            fail_at_word(expected);
+        const auto place = at_;
+        double d = 0;
+        const auto w = word();
+        if (is_number(w, d) && std::abs(d) <= 1e18)
+            return d;
+        const auto [past, wrong] = std::from_chars(w.data() + (w.starts_with('+') ? 1 : 0), w.data() + w.size(), d);
+        if (past == w.data() + w.size() && wrong != std::errc::invalid_argument)
+            return std::numeric_limits<double>::quiet_NaN();
+        at_ = place;
+        fail_at_word(expected);
     }
 
     static std::string_view trimmed(std::string_view s)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <photongrid/io/import/import_log.hpp>
-#include <photongrid/io/obj/polygon.hpp>
+#include <photongrid/io/import/polygon_cutter.hpp>
 #include <photongrid/scene/mesh.hpp>
 
 #include <array>
@@ -35,7 +35,7 @@ struct material_change {
 /// Statements of one kind that make no triangles.
 struct skipped_statements {
     std::string statement;
-    source_place place; ///< of the first
+    source_place place{""}; ///< of the first
     std::size_t count = 0;
 };
 
@@ -50,6 +50,7 @@ struct surface {
     std::vector<placed_name> materials;     ///< the different names of `usemtl`
     std::vector<material_change> changes;   ///< in the order of faces; what comes first has no material
     std::vector<skipped_statements> skipped;
+    skipped_statements flat; ///< faces of fewer than three corners, which are not in `corners`
     std::optional<source_place> smooth_without_normals; ///< of smoothing that faces without normals ask for
 };
 
@@ -62,8 +63,7 @@ struct face_range {
 /// \throws scene_error as parse_obj does.
 surface parse(const std::string& file, std::string_view text);
 
-/// The mesh of some faces. Its vertices are in the order in which faces first name them. Without a cutter all faces are
-/// fans around their first corner.
-mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter* cutter);
+/// The mesh of some faces. Its vertices are in the order in which faces first name them.
+mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter& cutter);
 
 } // namespace photongrid::obj

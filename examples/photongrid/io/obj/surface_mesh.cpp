@@ -1,23 +1,10 @@
 #include <photongrid/io/obj/surface.hpp>
 
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <optional>
 
 namespace photongrid::obj {
 
 namespace {
-    /// Newell's method.
-    glm::dvec3 normal_of_face(const surface& s, std::size_t first, std::size_t past)
-    {
-        const auto at = [&](std::size_t i) { return s.positions[s.corners[i][0]]; };
-        glm::dvec3 sum(0);
-        for (std::size_t i = first; i < past; ++i)
-            sum += glm::cross(at(i) - at(first), at(i + 1 < past ? i + 1 : first) - at(first));
-        const double length = glm::length(sum);
-        return length > 0 && std::isfinite(length) ? sum / length : glm::dvec3(0, 0, 1);
-    }
-
     /// The numbers of corners: a table with open addressing, which takes a third of the memory of a standard one.
     class corner_numbers {
     public:
@@ -70,7 +57,7 @@ namespace {
     };
 } // namespace
 
-mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter* cutter)
+mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter& cutter)
 {
     const auto first_corner = [&](std::uint32_t face) {
         return face < s.face_starts.size() ? s.face_starts[face] : static_cast<std::uint32_t>(s.corners.size());
@@ -105,13 +92,16 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter
         for (auto f = r.first; f < r.past; ++f) {
             const std::size_t begin = first_corner(f), end = first_corner(f + 1);
             face.clear();
+            outline.clear();
+            for (std::size_t i = begin; i < end; ++i)
+                outline.emplace_back(s.positions[s.corners[i][0]]);
             std::optional<glm::vec3> of_plane; // which corners without a normal have, and share with no other face
             for (std::size_t i = begin; i < end; ++i) {
                 const auto& c = s.corners[i];
                 const auto next = static_cast<std::uint32_t>(places.size());
                 if (has_normals && c[2] == absent) {
                     if (!of_plane)
-                        of_plane = glm::vec3(normal_of_face(s, begin, end));
+                        of_plane = glm::vec3(normal_of_polygon(outline));
                     add(c, *of_plane);
                     face.push_back(next);
                     continue;
@@ -120,16 +110,11 @@ mesh mesh_of(const surface& s, std::span<const face_range> faces, polygon_cutter
                 if (face.back() == next)
                     add(c, has_normals ? s.normals[c[2]] : glm::vec3(0));
             }
-            if (cutter != nullptr && face.size() > 3) {
-                outline.clear();
-                for (std::size_t i = begin; i < end; ++i)
-                    outline.emplace_back(s.positions[s.corners[i][0]]);
-                for (const auto& t : cutter->triangles_of(outline, normal_of_face(s, begin, end)))
+            if (face.size() == 3)
+                made.triangles.emplace_back(face[0], face[1], face[2]);
+            else
+                for (const auto& t : cutter.triangles_of(outline, normal_of_polygon(outline)))
                     made.triangles.emplace_back(face[t.x], face[t.y], face[t.z]);
-                continue;
-            }
-            for (std::size_t i = 2; i < face.size(); ++i)
-                made.triangles.emplace_back(face[0], face[i - 1], face[i]);
         }
     set_positions(made, places);
     return made;

@@ -50,10 +50,10 @@ namespace {
             statement_reader::mark place;
         };
 
-        float number(double most, const char* expected) { return static_cast<float>(at_.number(most, expected)); }
-        glm::vec3 three(double most, const char* expected)
+        float any_number(const char* expected) { return static_cast<float>(at_.any_number(expected)); }
+        glm::vec3 three(const char* expected)
         {
-            const float x = number(most, expected), y = number(most, expected), z = number(most, expected);
+            const float x = any_number(expected), y = any_number(expected), z = any_number(expected);
             return {x, y, z};
         }
 
@@ -68,7 +68,7 @@ namespace {
             else if (statement == "vt")
                 read_coordinates();
             else if (statement == "vn")
-                made_.normals.push_back(three(1e18, "a number: normals have three, up to 10^18"));
+                made_.normals.push_back(three("a number: normals have three"));
             else if (statement == "f")
                 read_face(place);
             else if (statement == "usemtl")
@@ -88,33 +88,30 @@ namespace {
         }
         void read_position()
         {
-            constexpr auto expected = "a number: vertices have three, up to 10^18, then perhaps a colour";
-            const double x = at_.number(1e18, expected), y = at_.number(1e18, expected), z = at_.number(1e18, expected);
+            constexpr auto expected = "a number: vertices have three, then perhaps a colour";
+            const double x = at_.any_number(expected), y = at_.any_number(expected), z = at_.any_number(expected);
             made_.positions.emplace_back(x, y, z);
             std::array<float, 4> more{};
             std::size_t n = 0;
             for (; n < more.size() && at_.find_word(); ++n)
-                more[n] = number(1e18, expected);
+                more[n] = any_number(expected);
             if (n == 2)
                 at_.fail_at_word(expected);
             if (n < 3) // nothing, or a weight, which has no meaning for triangles
                 return;
             const std::size_t first = n - 3; // after a weight
             const glm::vec3 color(more[first], more[first + 1], more[first + 2]);
-            for (int c = 0; c < 3; ++c)
-                if (!(color[c] >= 0 && color[c] <= 1))
-                    at_.fail(at_.here(), "found a colour that is not from 0 to 1");
             made_.colors.resize(made_.positions.size() - 1, glm::vec3(1));
             made_.colors.push_back(color);
         }
         void read_coordinates()
         {
-            constexpr auto expected = "a number: texture coordinates have one to three, up to 10^6";
-            glm::vec2 at(number(1e6, expected), 0.0f);
+            constexpr auto expected = "a number: texture coordinates have one to three";
+            glm::vec2 at(any_number(expected), 0.0f);
             if (at_.find_word())
-                at.y = number(1e6, expected);
+                at.y = any_number(expected);
             if (at_.find_word())
-                number(1e6, expected);
+                any_number(expected);
             made_.coordinates.push_back(at);
         }
 
@@ -164,8 +161,12 @@ namespace {
                 if (is_smooth_ && corners.back()[2] == absent && !made_.smooth_without_normals)
                     made_.smooth_without_normals = at_.place_of(smoothing_);
             }
-            if (n < 3)
-                at_.fail(place, "found a face of " + std::to_string(n) + " corners; expected three or more");
+            if (n < 3) { // no triangle
+                if (made_.flat.count++ == 0)
+                    made_.flat.place = at_.place_of(place);
+                corners.resize(made_.face_starts.back());
+                made_.face_starts.pop_back();
+            }
             if (corners.size() >= absent)
                 at_.fail(place, "the faces have more than 2^32 - 2 corners");
         }

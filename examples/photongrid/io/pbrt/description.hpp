@@ -39,6 +39,8 @@ public:
     void add_absent(const parameter_list& defaults);
 
     const parameter* find(std::string_view name) const;
+    /// The same to be changed, without being asked for; null if there is none.
+    parameter* change(std::string_view name);
     double number(std::string_view name, double if_absent) const;
     std::optional<double> number(std::string_view name) const;
     int whole(std::string_view name, int if_absent) const;

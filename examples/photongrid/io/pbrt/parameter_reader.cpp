@@ -41,6 +41,12 @@ parameter read_parameter(token_reader& t)
         .type = declared.substr(begin, end - begin), .name = declared.substr(name, past - name), .place = place};
     if (p.name.empty())
         fail_at(place, "found the text " + shown_word(declared) + "; expected the type and name of a parameter");
+    if (p.type == "color") // as in pbrt-v3
+        p.type = "rgb";
+    if (p.type == "xyz")
+        fail_at(place,
+            "found the type \"xyz\" of pbrt-v3, which pbrt-v4 does not have; `pbrt --upgrade` of pbrt-v4 rewrites the "
+            "file");
     if (!is_one_of(p.type,
             {"float", "integer", "bool", "string", "texture", "point2", "vector2", "point3", "vector3", "point",
                 "vector", "normal", "normal3", "rgb", "spectrum", "blackbody"}))

@@ -48,6 +48,12 @@ const parameter* parameter_list::find(std::string_view name) const
     return &*found;
 }
 
+parameter* parameter_list::change(std::string_view name)
+{
+    const auto found = std::find_if(all_.begin(), all_.end(), [&](const parameter& p) { return p.name == name; });
+    return found == all_.end() ? nullptr : &*found;
+}
+
 std::optional<double> parameter_list::number(std::string_view name) const
 {
     const auto* p = find(name);

@@ -2,6 +2,7 @@
 #include <photongrid/io/pbrt/description.hpp>
 #include <photongrid/io/pbrt/parameter_reader.hpp>
 #include <photongrid/io/pbrt/transformations.hpp>
+#include <photongrid/io/pbrt/version_3.hpp>
 
 #include <photongrid/io/import/included_files.hpp>
 #include <photongrid/io/json_tree.hpp>
@@ -318,7 +319,14 @@ namespace {
         void read_material(token_reader& t, const source_place& place)
         {
             state_.material = {.name = {}, .index = made_.materials.size()};
-            made_.materials.push_back(read_entity(t, place, "a material's type", "material"));
+            made_.materials.push_back(of_version_4(read_entity(t, place, "a material's type", "material"), "material"));
+        }
+        /// As pbrt-v4 says it, with a note if it is pbrt-v3's.
+        entity of_version_4(entity e, std::string_view kind)
+        {
+            if (to_version_4(e, kind) && !std::exchange(is_old_, true))
+                log_.say(e.place, "written for pbrt-v3: its materials and lights are read as the nearest of pbrt-v4");
+            return e;
         }
         /// What follows a name: its type is a parameter.
         entity read_named_entity(token_reader& t, const source_place& place, const char* kind)
@@ -338,7 +346,7 @@ namespace {
                 fail_at(place, "MakeNamedMaterial " + shown_word(name) + " lacks the parameter \"string type\"");
             if (!made_.named_materials.emplace(name, made_.materials.size()).second)
                 fail_at(place, "the material " + shown_word(name) + " is defined twice");
-            made_.materials.push_back(std::move(e));
+            made_.materials.push_back(of_version_4(std::move(e), "material"));
         }
         void use_named_material(token_reader& t, const source_place&)
         {
@@ -346,7 +354,10 @@ namespace {
         }
         void read_texture(token_reader& t, const source_place& place)
         {
-            const auto name = t.quoted("a texture's name"), value = t.quoted("float or spectrum");
+            const auto name = t.quoted("a texture's name");
+            auto value = t.quoted("float or spectrum");
+            if (value == "color") // as in pbrt-v3
+                value = "spectrum";
             if (!is_one_of(value, {"float", "spectrum"}))
                 fail_at(place, "found a texture of " + shown_word(value) + "; expected float or spectrum");
             auto e = read_entity(t, place, "a texture's type", "texture");
@@ -356,11 +367,11 @@ namespace {
         void read_area_light(token_reader& t, const source_place& place)
         {
             state_.area_light = made_.area_lights.size();
-            made_.area_lights.push_back(read_entity(t, place, "a light's type", "light"));
+            made_.area_lights.push_back(of_version_4(read_entity(t, place, "a light's type", "light"), "light"));
         }
         void read_light(token_reader& t, const source_place& place)
         {
-            made_.lights.push_back(read_entity(t, place, "a light's type", "light"));
+            made_.lights.push_back(of_version_4(read_entity(t, place, "a light's type", "light"), "light"));
         }
         void read_medium(token_reader& t, const source_place& place)
         {
@@ -388,6 +399,7 @@ namespace {
         std::map<std::string, glm::dmat4> systems_;
         std::optional<std::string> object_; ///< the one that is being defined
         bool in_world_ = false;
+        bool is_old_ = false; ///< something is pbrt-v3's
     };
 } // namespace
 

@@ -73,11 +73,14 @@ namespace {
         p.find("faceIndices");
         if (m.positions.empty())
             fail_at(s.place, "the shape lacks \"point3 P\", its vertices");
-        try {
-            check(m);
-        } catch (const std::invalid_argument& e) {
-            fail_at(s.place, e.what());
-        }
+        const auto require_as_many = [&](const char* name, std::size_t size) {
+            if (size != 0 && size != m.positions.size())
+                fail_at(s.place,
+                    std::string(name) + ": there are " + std::to_string(size) + " of them and "
+                        + std::to_string(m.positions.size()) + " positions; expected one for each, or none");
+        };
+        require_as_many("N", m.normals.size());
+        require_as_many(coordinates, m.texture_coordinates.size());
         return m;
     }
 } // namespace

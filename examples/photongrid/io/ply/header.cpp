@@ -51,8 +51,8 @@ void header_reader::fail(const std::string& what) const
     if (!in_header_ && format_ != format::ascii)
         throw scene_error(file_, 0, 0, "byte " + std::to_string(at_) + ": " + what);
     const auto before = bytes_.substr(0, at_);
-    const auto line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
-    const auto begin = before.rfind('\n') + 1; // npos + 1 is 0
+    const auto line = static_cast<std::size_t>(std::count(before.begin(), before.end(), end_of_line_)) + 1;
+    const auto begin = before.rfind(end_of_line_) + 1; // npos + 1 is 0
     throw scene_error(file_, line, at_ - begin + 1, what);
 }
 
@@ -70,7 +70,8 @@ bool header_reader::is_read(role use) const
     case role::x:
     case role::y:
     case role::z:
-    case role::corners: return true;
+    case role::corners:
+    case role::strips: return true;
     case role::nx:
     case role::ny:
     case role::nz: return is_smooth();
@@ -91,7 +92,7 @@ void header_reader::tell_what_is_left_out() const
     for (const auto& e : elements_) {
         if (e.count == 0)
             continue;
-        if (e.name != "vertex" && e.name != "face") {
+        if (e.name != "vertex" && e.name != "face" && e.name != "tristrips") {
             rest_->left_out.push_back({e.line, "the elements " + shown_word(e.name) + " are left out"});
             continue;
         }
@@ -104,7 +105,7 @@ void header_reader::tell_what_is_left_out() const
 
 std::string_view header_reader::next_line() const
 {
-    const auto end = bytes_.find('\n', at_);
+    const auto end = bytes_.find(end_of_line_, at_);
     if (end == std::string_view::npos || end - at_ > 4096)
         fail("the header does not end; expected \"end_header\"");
     auto line = bytes_.substr(at_, end - at_);
@@ -112,6 +113,8 @@ std::string_view header_reader::next_line() const
         line.remove_suffix(1);
     return line;
 }
+
+void header_reader::to_next_line() { at_ = bytes_.find(end_of_line_, at_) + 1; }
 
 scalar header_reader::scalar_of(std::string_view name) const
 {
@@ -134,11 +137,14 @@ format header_reader::format_of(std::string_view word) const
 
 void header_reader::read_header()
 {
+    if (const auto first = bytes_.find_first_of("\r\n");
+        first != std::string_view::npos && bytes_[first] == '\r' && bytes_.substr(first + 1, 1) != "\n")
+        end_of_line_ = '\r';
     if (next_line() != "ply")
         fail("this is no PLY file: its first line is not \"ply\"");
     bool has_format = false;
     for (bool ends = false; !ends;) {
-        at_ = bytes_.find('\n', at_) + 1;
+        to_next_line();
         ++line_;
         const auto line = next_line();
         const auto w = words_of(line);
@@ -173,12 +179,14 @@ void header_reader::read_header()
     }
     if (!has_format)
         fail("the header lacks a line \"format\"");
-    at_ = bytes_.find('\n', at_) + 1;
+    to_next_line();
     in_header_ = false;
     if (!has(role::x) || !has(role::y) || !has(role::z))
         fail("the header declares no vertex with the properties x, y and z");
-    if (!has(role::corners))
-        fail("the header declares no face with the list vertex_indices; a cloud of points has no surface");
+    if (!has(role::corners) && !has(role::strips))
+        fail(
+            "the header declares neither faces with the list vertex_indices nor strips of triangles; a cloud of points "
+            "has no surface");
     tell_what_is_left_out();
 }
 
@@ -201,6 +209,8 @@ void header_reader::read_property(const std::vector<std::string_view>& w)
             fail("the length of a list is of the type " + shown_word(w[2]) + "; expected a whole number");
         if (e.name == "face" && (name == "vertex_indices" || name == "vertex_index"))
             p.use = role::corners;
+        if (e.name == "tristrips" && (name == "vertex_indices" || name == "vertex_index"))
+            p.use = role::strips;
     } else if (e.name == "vertex") {
         for (const auto& r : role_names)
             if (r.name == name)

@@ -21,7 +21,7 @@ constexpr std::size_t size_of(scalar s)
 }
 
 /// What a property is for.
-enum class role { x, y, z, nx, ny, nz, u, v, red, green, blue, corners, none };
+enum class role { x, y, z, nx, ny, nz, u, v, red, green, blue, corners, strips, none };
 
 /// A number or a list that each of an element's things has.
 struct property {
@@ -47,7 +47,7 @@ class header_reader {
 public:
     /// `rest` may be null.
     header_reader(const std::string& file, std::string_view bytes, ply_rest* rest)
-        : file_(file), bytes_(bytes), rest_(rest)
+        : file_(file), rest_(rest), bytes_(bytes)
     {
     }
 
@@ -64,6 +64,7 @@ protected:
     bool is_colored() const { return has(role::red) && has(role::green) && has(role::blue); }
 
     std::string file_;
+    ply_rest* rest_;
     std::string_view bytes_;
     std::size_t at_ = 0;
     format format_ = format::ascii;
@@ -71,14 +72,15 @@ protected:
 
 private:
     std::string_view next_line() const;
+    void to_next_line();
     scalar scalar_of(std::string_view name) const;
     format format_of(std::string_view word) const;
     void read_property(const std::vector<std::string_view>& words);
     bool is_read(role use) const;
     void tell_what_is_left_out() const;
 
-    ply_rest* rest_;
-    std::size_t line_ = 1; ///< of the header
+    char end_of_line_ = '\n'; ///< of the header
+    std::size_t line_ = 1;    ///< of the header
     bool in_header_ = true;
 };
 

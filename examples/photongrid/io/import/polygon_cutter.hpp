@@ -7,9 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
-namespace photongrid::obj {
+namespace photongrid {
+
+/// A normal of a polygon's plane, a unit vector (Newell's method); that of z where it has no area.
+glm::dvec3 normal_of_polygon(std::span<const glm::dvec3> corners);
 
 /// Cuts polygons into triangles: fans around the first corner where these cover nothing else, else ears (Meisters
 /// 1975).
@@ -34,4 +38,8 @@ private:
     std::uint64_t steps_ = 0;
 };
 
-} // namespace photongrid::obj
+/// "2 faces have fewer than three corners, and are left out", and the like.
+std::string text_of_flat_faces(std::size_t count);
+std::string text_of_crossed_faces(std::size_t count);
+
+} // namespace photongrid

@@ -1,9 +1,9 @@
-#include <photongrid/io/obj/polygon.hpp>
+#include <photongrid/io/import/polygon_cutter.hpp>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace photongrid::obj {
+namespace photongrid {
 
 namespace {
     constexpr std::uint64_t max_steps = std::uint64_t{1} << 30;
@@ -14,6 +14,15 @@ namespace {
         return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     }
 } // namespace
+
+glm::dvec3 normal_of_polygon(std::span<const glm::dvec3> corners)
+{
+    glm::dvec3 sum(0);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        sum += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
+    const double length = glm::length(sum);
+    return length > 0 && std::isfinite(length) ? sum / length : glm::dvec3(0, 0, 1);
+}
 
 bool polygon_cutter::is_ear(std::uint32_t at) const
 {
@@ -89,4 +98,15 @@ std::span<const glm::uvec3> polygon_cutter::triangles_of(std::span<const glm::dv
     return made_;
 }
 
-} // namespace photongrid::obj
+std::string text_of_flat_faces(std::size_t count)
+{
+    return std::to_string(count) + (count == 1 ? " face has" : " faces have") + " fewer than three corners: left out";
+}
+
+std::string text_of_crossed_faces(std::size_t count)
+{
+    return std::to_string(count) + (count == 1 ? " face crosses itself: its" : " faces cross themselves: their")
+        + " triangles cover each other, or more than the face";
+}
+
+} // namespace photongrid
