@@ -27,6 +27,7 @@
 # and with --full:
 #   gpu_assisted  the Vulkan backend under GPU-assisted validation
 #   benches       each bench, briefly
+#   blender       scenes that Blender makes beside Cycles' pictures; skipped without Blender, which is not installed
 #   tidy          clang-tidy
 #   faults        tests/planted_faults.sh, and 40 faults that nobody chose
 set -euo pipefail
@@ -140,7 +141,7 @@ if [[ $device == hardware ]]; then
     short=(--label-exclude full) # the long runs too: pictures by seeds, on devices that round loosely
   fi
 elif [[ $full == yes ]]; then
-  all_stages+=(gpu_assisted benches tidy faults)
+  all_stages+=(gpu_assisted benches blender tidy faults)
 fi
 for stage in "${stages[@]}"; do
   if [[ " ${all_stages[*]} " != *" $stage "* ]]; then
@@ -222,6 +223,11 @@ stage_benches() {
   local arguments=(--smoke)
   [[ $install == yes ]] || arguments+=(--no-install)
   bench/run.sh "${arguments[@]}"
+}
+stage_blender() {
+  configure tests -DPHOTONGRID_FULL_TESTS=$everything -DCMAKE_UNITY_BUILD=$together
+  cmake --build build-tests --target photongrid_program
+  tests/pictures_of_others.sh blender "" build-tests/photongrid
 }
 stage_tidy() { tests/tidy.sh; }
 stage_faults() {
