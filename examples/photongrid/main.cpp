@@ -133,7 +133,14 @@ int main(int argc, char** argv)
     const auto say = [](const std::exception& e) { std::cerr << "photongrid: error: " << e.what() << '\n'; };
     try {
         watch_signals();
-        return std::visit([](const auto& options) { return run(options); }, read_command_line(argc, argv));
+        const auto done = std::visit([](const auto& options) { return run(options); }, read_command_line(argc, argv));
+        errno = 0;
+        if (!std::cout.flush()) { // a full device, say: what was to be told is lost
+            std::cerr << "photongrid: error: the standard output cannot be written"
+                      << (errno != 0 ? std::string(": ") + std::strerror(errno) : "") << '\n';
+            return done == success ? file_failure : done;
+        }
+        return done;
     } catch (const render_cancelled&) {
         std::cerr << "photongrid: interrupted; no picture written\n";
         return interrupted;

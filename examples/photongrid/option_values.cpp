@@ -23,12 +23,19 @@ namespace {
     glm::vec<N, glm::uint> parsed_list(
         const std::string& option, std::string_view text, char separator, const char* expected)
     {
+        const auto wrong = [&, whole = std::string(text)] {
+            throw CLI::ValidationError(option, "\"" + whole + "\" given; expected " + expected);
+        };
         glm::vec<N, glm::uint> v(0);
         for (glm::length_t i = 0; i < N; ++i) {
             const auto end = i + 1 < N ? text.find(separator) : text.size();
             if (end == std::string_view::npos)
-                throw CLI::ValidationError(option, std::string("expected ") + expected);
-            v[i] = parsed<glm::uint>(option, text.substr(0, end), expected);
+                wrong();
+            try {
+                v[i] = parsed<glm::uint>(option, text.substr(0, end), expected);
+            } catch (const CLI::ValidationError&) { // which quotes a part
+                wrong();
+            }
             text.remove_prefix(std::min(end + 1, text.size()));
         }
         return v;

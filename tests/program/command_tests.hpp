@@ -89,6 +89,28 @@ namespace {
         EXPECT_EQ(run({"check", "none.json"}).code, 3);
     }
 
+    // What is lost on a full device, or is quoted, is said.
+    TEST_F(program, says_when_the_standard_output_is_full)
+    {
+        for (const std::string command : {"devices", "check " PHOTONGRID_SCENES "/ring.json"}) {
+            const auto whole = PHOTONGRID_PROGRAM " " + command + " > /dev/full 2> " + (folder / "err").string();
+            const int status = std::system(whole.c_str());
+            ASSERT_TRUE(WIFEXITED(status));
+            EXPECT_EQ(WEXITSTATUS(status), 5) << command;
+            EXPECT_NE(contents(folder / "err").find("the standard output cannot be written: No space left"),
+                std::string::npos)
+                << contents(folder / "err");
+        }
+    }
+    TEST_F(program, quotes_what_was_given)
+    {
+        for (const std::string size : {"8x", "8", "x8", "8x8x8", "8xa"})
+            EXPECT_NE(
+                run({"render", ring, "--size", size}).err.find('"' + size + "\" given; expected width and height"),
+                std::string::npos)
+                << size;
+    }
+
     /// What is chosen is printed as options, which draw the same picture.
     TEST_F(program, draws_scenes_without_settings_on_every_device)
     {

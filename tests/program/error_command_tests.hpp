@@ -135,7 +135,7 @@ namespace {
         };
         fails(5, "the sizes differ: 6 x 4 and 4 x 6", {"picture.pfm", "other.pfm"});
         fails(5, "none.pfm", {"none.pfm", "reference.pfm"});
-        fails(5, "expected .exr or .pfm", {"picture.png", "reference.pfm"});
+        fails(5, "picture.png: cannot be read", {"picture.png", "reference.pfm"});
         fails(5, "folder", {"picture.pfm", "reference.pfm", "-o", "no/folder.png"});
         fails(
             5, "other.pfm: --region c: the sizes differ", {"picture.pfm", "reference.pfm", "--region", "c=other.pfm"});

@@ -183,8 +183,8 @@ image read_image(const std::string& path)
     const auto decode = decoder_of(path, bytes);
     if (decode != image_formats::decode_exr && decode != image_formats::decode_pfm)
         fail_file(path, "is neither EXR nor PFM (a PNG is tone-mapped and clamped, so it cannot be measured)");
-    pixel_budget any(~std::uint64_t{0} / 64);
-    return decoded_image(decode, path, bytes, any);
+    pixel_budget measured(std::uint64_t{1} << 28);
+    return decoded_image(decode, path, bytes, measured);
 }
 
 picture_channels read_channels(const std::string& path)

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 namespace photongrid {
@@ -173,6 +174,12 @@ imported_scene import_scene(const std::string& path, const import_settings& sett
         made.scene.camera = from.camera;
         made.scene.render.output.width = from.render.output.width;
         made.scene.render.output.height = from.render.output.height;
+    }
+    // What is drawn is what was checked: no command refuses what another one takes.
+    try {
+        check(made.scene);
+    } catch (const std::invalid_argument& e) {
+        throw scene_error(path, 0, 0, e.what());
     }
     return made;
 }
