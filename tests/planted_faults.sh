@@ -545,6 +545,7 @@ tests_of() {
 folder_of() {
   case $1 in
     on_cpu | on_gl | on_vulkan) echo "build-${1#on_}" ;;
+    any_backend) echo build-cpu ;; # which has two
     gl_*) echo build-gl ;;
     vulkan_* | program) echo build-vulkan ;; # the program with a module
     *) echo build-serial ;;
