@@ -242,8 +242,7 @@ std::shared_ptr<const mesh> scene_builder::drawable(const source_place& place, s
         note(place, said);
     if (made->triangles.empty())
         made = nullptr;
-    if (made != surface)
-        mended_.emplace(std::move(surface), made);
+    mended_.emplace(std::move(surface), made); // sound ones, too: many places may have the same
     return made;
 }
 

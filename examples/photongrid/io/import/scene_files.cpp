@@ -199,7 +199,7 @@ std::shared_ptr<const mesh> scene_files::surface(const std::string& name)
 {
     auto& surface = surfaces_[name];
     if (!surface) {
-        const auto path = path_of_regular(name), bytes = bytes_of(name);
+        const auto path = path_of(name), bytes = bytes_of(name);
         std::vector<std::string> left_out;
         ply_rest rest;
         auto made = ending_of(name) == ".obj" ? parse_obj(path, bytes, &left_out) : parse_ply(path, bytes, &rest);
@@ -244,7 +244,7 @@ std::shared_ptr<const texture> scene_files::texture(const std::string& name, tex
 {
     auto& map = textures_[{name, holds}];
     if (!map)
-        map = decoded_texture(path_of_regular(name), bytes_of(name), holds);
+        map = decoded_texture(path_of(name), bytes_of(name), holds);
     return map;
 }
 
@@ -261,7 +261,7 @@ std::shared_ptr<const environment_map> scene_files::environment(const std::strin
 {
     auto& map = environments_[name];
     if (!map) {
-        const auto path = path_of_regular(name);
+        const auto path = path_of(name);
         auto picture = decode_linear_image(path, bytes_of(name), pixels_);
         environment_map made{picture.width, picture.height, std::move(picture.pixels)};
         if (const auto odd = mend_radiance(made); odd.count > 0)
